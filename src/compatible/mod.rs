@@ -1,0 +1,1 @@
+//! Compatible simplification and triangulation.

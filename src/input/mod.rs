@@ -1,0 +1,5 @@
+//! Drawings.
+
+mod picture;
+
+pub use picture::Picture;

@@ -1,0 +1,5 @@
+//! Boundary matching.
+
+mod correspondence;
+
+pub use correspondence::{Correspondence, CorrespondenceError};

@@ -1,0 +1,16 @@
+//! Numbers every stage shares: points, 2 x 2 matrices with their polar split, angles, exact predicates.
+//!
+//! Coordinates are `f64`, x to the right and y down as in the source file. Every formula uses the usual signs
+//! (`cross((1, 0), (0, 1)) = 1`), so a positive signed area is counter-clockwise in the formula and clockwise on
+//! the screen; the documentation says *positive* and *negative*, never *clockwise*.
+//!
+//! Decisions (left or right, crossing or not) are taken by [`predicate`], which is exact; measurements (lengths,
+//! areas, angles) are plain floating point.
+
+pub mod angle;
+pub mod matrix;
+pub mod point;
+pub mod predicate;
+
+pub use matrix::{Matrix, PolarSplit, rotation};
+pub use point::Point;

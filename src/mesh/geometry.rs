@@ -1,0 +1,85 @@
+//! Measures of triangles at given positions.
+
+use crate::math::{Matrix, Point, point};
+
+/// The three corners of a triangle.
+#[must_use]
+pub fn corners(positions: &[Point], [a, b, c]: [usize; 3]) -> [Point; 3] {
+    [positions[a], positions[b], positions[c]]
+}
+
+/// The signed area of the triangle `a b c`.
+#[must_use]
+pub fn signed_area([a, b, c]: [Point; 3]) -> f64 {
+    0.5 * point::cross(b - a, c - a)
+}
+
+/// The matrix whose columns are the edges `a b` and `a c`.
+#[must_use]
+pub fn edge_matrix([a, b, c]: [Point; 3]) -> Matrix {
+    Matrix::from_columns(&[b - a, c - a])
+}
+
+/// The gradients of the three barycentric coordinates: row `k` of a linear function's gradient operator, so that the
+/// gradient of the function with corner values `f` is the sum of `f[k] * gradients[k]`. `None` for zero area.
+#[must_use]
+pub fn barycentric_gradients(triangle: [Point; 3]) -> Option<[Point; 3]> {
+    let double_area = 2.0 * signed_area(triangle);
+    if double_area == 0.0 {
+        return None;
+    }
+    let [a, b, c] = triangle;
+    Some(
+        [
+            point::perpendicular(c - b),
+            point::perpendicular(a - c),
+            point::perpendicular(b - a),
+        ]
+        .map(|g| g / double_area),
+    )
+}
+
+/// The interior angle at each corner, in radians, in `[0, pi]`.
+#[must_use]
+pub fn angles_rad([a, b, c]: [Point; 3]) -> [f64; 3] {
+    let at = |p: Point, q: Point, r: Point| {
+        let (u, v) = (q - p, r - p);
+        point::cross(u, v).abs().atan2(u.dot(&v))
+    };
+    [at(a, b, c), at(b, c, a), at(c, a, b)]
+}
+
+/// The smallest interior angle, in radians.
+#[must_use]
+pub fn smallest_angle_rad(triangle: [Point; 3]) -> f64 {
+    angles_rad(triangle).into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// The barycentric coordinates of `p`; `None` for a triangle of zero area.
+#[must_use]
+pub fn barycentric([a, b, c]: [Point; 3], p: Point) -> Option<[f64; 3]> {
+    let double_area = point::cross(b - a, c - a);
+    if double_area == 0.0 {
+        return None;
+    }
+    let at_b = point::cross(p - a, c - a) / double_area;
+    let at_c = point::cross(b - a, p - a) / double_area;
+    Some([1.0 - at_b - at_c, at_b, at_c])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn measures_of_a_right_triangle() {
+        let triangle = [[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]].map(Point::from);
+        assert_eq!(signed_area(triangle), 6.0);
+        assert!((angles_rad(triangle).iter().sum::<f64>() - std::f64::consts::PI).abs() < 1e-15);
+        assert_eq!(barycentric(triangle, Point::new(0.0, 4.0)), Some([0.0, 0.0, 1.0]));
+        // The function x has gradient (1, 0).
+        let gradients = barycentric_gradients(triangle).expect("it has area");
+        let gradient: Point = triangle.iter().zip(gradients).map(|(p, g)| g * p.x).sum();
+        assert!((gradient - Point::new(1.0, 0.0)).norm() < 1e-15);
+    }
+}

@@ -1,0 +1,107 @@
+//! A ring measured by arc length.
+
+use super::Ring;
+use crate::math::{Point, point};
+
+/// The arc-length parameter of a ring: 0 at its first point, growing along it, 1 back at the first point.
+///
+/// Cost: built in O(#points), each query O(log #points) but for [`ArcLength::nearest`], which is O(#points).
+#[derive(Debug, Clone)]
+pub struct ArcLength {
+    points: Vec<Point>,
+    /// Parameter of each point, and a final 1.
+    parameters: Vec<f64>,
+    perimeter: f64,
+}
+
+impl ArcLength {
+    /// Measures `ring`.
+    #[must_use]
+    pub fn new(ring: &Ring) -> Self {
+        let mut parameters = Vec::with_capacity(ring.len() + 1);
+        let mut travelled = 0.0;
+        for (a, b) in ring.edges() {
+            parameters.push(travelled);
+            travelled += (b - a).norm();
+        }
+        for parameter in &mut parameters {
+            *parameter /= travelled;
+        }
+        parameters.push(1.0);
+        Self {
+            points: ring.points().to_vec(),
+            parameters,
+            perimeter: travelled,
+        }
+    }
+
+    /// The ring's length, in source units.
+    #[must_use]
+    pub fn perimeter(&self) -> f64 {
+        self.perimeter
+    }
+
+    /// The parameter of each point of the ring, in `[0, 1)` and increasing.
+    #[must_use]
+    pub fn vertex_parameters(&self) -> &[f64] {
+        &self.parameters[..self.points.len()]
+    }
+
+    /// The edge that holds parameter `t` (taken modulo 1) and how far along that edge it lies, in `[0, 1]`.
+    #[must_use]
+    pub fn locate(&self, t: f64) -> (usize, f64) {
+        let t = t.rem_euclid(1.0);
+        let edge = self
+            .parameters
+            .partition_point(|&p| p <= t)
+            .saturating_sub(1)
+            .min(self.points.len() - 1);
+        let (start, end) = (self.parameters[edge], self.parameters[edge + 1]);
+        let along = if end > start {
+            ((t - start) / (end - start)).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        (edge, along)
+    }
+
+    /// The point at parameter `t`, taken modulo 1.
+    #[must_use]
+    pub fn at(&self, t: f64) -> Point {
+        let (edge, along) = self.locate(t);
+        let (a, b) = (self.points[edge], self.points[(edge + 1) % self.points.len()]);
+        if along == 0.0 { a } else { a + (b - a) * along }
+    }
+
+    /// The parameter, in `[0, 1)`, of the point of the ring nearest to `p`, and its distance.
+    #[must_use]
+    pub fn nearest(&self, p: Point) -> (f64, f64) {
+        let mut best = (0.0, f64::INFINITY);
+        for edge in 0..self.points.len() {
+            let (a, b) = (self.points[edge], self.points[(edge + 1) % self.points.len()]);
+            let (along, distance) = point::nearest_on_segment(p, a, b);
+            if distance < best.1 {
+                let t = self.parameters[edge] + along * (self.parameters[edge + 1] - self.parameters[edge]);
+                best = (t.rem_euclid(1.0), distance);
+            }
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_follow_the_edges() {
+        let ring = Ring::new([[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]].map(Point::from)).expect("a ring");
+        let arc = ArcLength::new(&ring);
+        assert_eq!(arc.perimeter(), 8.0);
+        assert_eq!(arc.vertex_parameters(), &[0.0, 0.375, 0.5, 0.875]);
+        assert_eq!(arc.at(0.25), Point::new(2.0, 0.0));
+        assert_eq!(arc.at(1.25), arc.at(0.25));
+        assert_eq!(arc.at(0.375), Point::new(3.0, 0.0));
+        assert_eq!(arc.nearest(Point::new(2.0, -5.0)), (0.25, 5.0));
+    }
+}

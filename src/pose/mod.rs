@@ -1,0 +1,7 @@
+//! One topology with N embeddings, and the mapping that the pipeline makes of N drawings.
+
+mod mapping;
+mod pose_set;
+
+pub use mapping::{Mapping, MappingError, Matching};
+pub use pose_set::{PoseSet, PoseSetError};
