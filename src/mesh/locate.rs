@@ -46,7 +46,7 @@ impl PointLocator {
     #[must_use]
     pub fn locate(&self, p: Point) -> Option<Located> {
         self.tree
-            .locate_in_envelope_intersecting(&AABB::from_point([p.x, p.y]))
+            .locate_in_envelope_intersecting(AABB::from_point([p.x, p.y]))
             .filter_map(|entry| {
                 let barycentric = geometry::barycentric(self.triangles[entry.data], p)?;
                 // Rounding of the three cross products: a point on an edge belongs to the mesh.

@@ -6,4 +6,4 @@ mod topology;
 pub mod validity;
 
 pub use locate::{Located, PointLocator};
-pub use topology::{Topology, TopologyError};
+pub use topology::{Topology, TopologyError, directed_edges};

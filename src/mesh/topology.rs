@@ -96,8 +96,7 @@ impl Topology {
         let mut some_triangle = vec![None; self.vertex_count];
         let mut boundary_starts = vec![0_usize; self.vertex_count];
         for (t, vertices) in self.triangles.iter().enumerate() {
-            for k in 0..3 {
-                let v = vertices[k];
+            for (k, &v) in vertices.iter().enumerate() {
                 triangles_at[v] += 1;
                 let starts_boundary = self.neighbours[t][k].is_none();
                 boundary_starts[v] += usize::from(starts_boundary);

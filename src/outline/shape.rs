@@ -49,8 +49,18 @@ impl Outline {
     /// # Errors
     /// [`OutlineError`] if edges meet, a ring has no area, or a hole is not inside the outer ring.
     pub fn new(outer: Ring, holes: Vec<Ring>) -> Result<Self, OutlineError> {
-        let mut rings = Vec::with_capacity(1 + holes.len());
-        for (index, ring) in std::iter::once(outer).chain(holes).enumerate() {
+        // Asked of the rings as given, so that the edge numbers are the caller's.
+        let given: Vec<Ring> = std::iter::once(outer).chain(holes).collect();
+        if let Some(meeting) = simplicity::first_meeting(&given) {
+            return Err(OutlineError::EdgesMeet {
+                first: meeting.first,
+                second: meeting.second,
+                x: meeting.place.x,
+                y: meeting.place.y,
+            });
+        }
+        let mut rings = Vec::with_capacity(given.len());
+        for (index, ring) in given.into_iter().enumerate() {
             let area = ring.signed_area();
             if area == 0.0 {
                 return Err(OutlineError::NoArea { ring: index });
@@ -59,14 +69,6 @@ impl Outline {
                 ring
             } else {
                 ring.reversed()
-            });
-        }
-        if let Some(meeting) = simplicity::first_meeting(&rings) {
-            return Err(OutlineError::EdgesMeet {
-                first: meeting.first,
-                second: meeting.second,
-                x: meeting.place.x,
-                y: meeting.place.y,
             });
         }
         for (hole, ring) in rings[1..].iter().enumerate() {

@@ -38,7 +38,7 @@ pub fn first_meeting(rings: &[Ring]) -> Option<Meeting> {
         let count = rings[ring].len();
         let (low, high) = (a.inf(&b), a.sup(&b));
         let first_in_order = tree
-            .locate_in_envelope_intersecting(&AABB::from_corners([low.x, low.y], [high.x, high.y]))
+            .locate_in_envelope_intersecting(AABB::from_corners([low.x, low.y], [high.x, high.y]))
             .filter(|other| (other.data.0, other.data.1) > (ring, edge))
             .filter(|other| {
                 let (other_ring, other_edge, c, d) = other.data;
