@@ -1,0 +1,87 @@
+//! Compatible splits: long edges get a vertex at their middle in every pose.
+
+use std::collections::BTreeMap;
+
+use super::super::editable::EditableMesh;
+use crate::math::Point;
+
+/// Splits edges whose length over the pose's diagonal, in the mean over the poses, exceeds `length`, longest first.
+/// Boundary edges get their new vertex into `rings`.
+pub(super) fn split_long_edges(mesh: &mut EditableMesh, rings: &mut [Vec<usize>], diagonals: &[f64], length: f64) {
+    let mut on_boundary: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for (ring, vertices) in rings.iter().enumerate() {
+        for (k, &v) in vertices.iter().enumerate() {
+            on_boundary.insert((v, vertices[(k + 1) % vertices.len()]), ring);
+        }
+    }
+    // A split never makes an edge longer than the one it cuts, except from the new vertex to an opposite corner: work
+    // through lists, longest first, until no long edge is left.
+    loop {
+        let mut long: Vec<(f64, usize, usize)> = mesh
+            .triangles()
+            .flat_map(|(_, triangle)| crate::mesh::directed_edges(triangle))
+            .filter(|&(a, b)| a < b || on_boundary.contains_key(&(a, b)))
+            .map(|(a, b)| (mean_length(mesh, diagonals, a, b), a, b))
+            .filter(|edge| edge.0 > length)
+            .collect();
+        if long.is_empty() {
+            break;
+        }
+        long.sort_by(|x, y| y.0.total_cmp(&x.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+        let mut any = false;
+        // The longest third: the rest may be cut off by these.
+        let count = long.len().div_ceil(3);
+        for &(_, a, b) in &long[..count] {
+            if let Some(middle) = split_edge(mesh, a, b) {
+                any = true;
+                if let Some(ring) = on_boundary.remove(&(a, b)) {
+                    on_boundary.insert((a, middle), ring);
+                    on_boundary.insert((middle, b), ring);
+                    if let Some(place) = rings[ring].iter().position(|&v| v == a) {
+                        rings[ring].insert(place + 1, middle);
+                    }
+                }
+            }
+        }
+        if !any {
+            break;
+        }
+    }
+}
+
+fn mean_length(mesh: &EditableMesh, diagonals: &[f64], a: usize, b: usize) -> f64 {
+    let relative = mesh
+        .positions
+        .iter()
+        .zip(diagonals)
+        .map(|(p, diagonal)| (p[b] - p[a]).norm() / diagonal);
+    relative.sum::<f64>() / diagonals.len() as f64
+}
+
+/// Splits the edge `a b` at its middle, if all new triangles are positive in every pose; gives the new vertex.
+fn split_edge(mesh: &mut EditableMesh, a: usize, b: usize) -> Option<usize> {
+    let sides: Vec<(usize, usize, usize)> = [(a, b), (b, a)]
+        .into_iter()
+        .filter_map(|(from, to)| mesh.opposite(from, to).map(|apex| (from, to, apex)))
+        .collect();
+    if sides.is_empty() {
+        return None;
+    }
+    let places: Vec<Point> = mesh.positions.iter().map(|p| (p[a] + p[b]) * 0.5).collect();
+    let positive = mesh.positions.iter().zip(&places).all(|(p, &middle)| {
+        sides.iter().all(|&(from, to, apex)| {
+            crate::math::predicate::is_positive(p[from], middle, p[apex])
+                && crate::math::predicate::is_positive(middle, p[to], p[apex])
+        })
+    });
+    if !positive {
+        return None;
+    }
+    let middle = mesh.add_vertex(places);
+    for (from, to, apex) in sides {
+        mesh.remove_at_edge(from, to);
+        mesh.add([from, middle, apex]);
+        mesh.add([middle, to, apex]);
+    }
+    Some(middle)
+}

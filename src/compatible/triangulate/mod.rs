@@ -1,0 +1,298 @@
+//! Compatible triangulation: N simple polygons with corresponding vertices get one triangulation.
+//!
+//! Input: N outlines with equal vertex counts; output: one topology with N embeddings, whose boundary is the polygons,
+//! vertex by vertex. Source: NWM 3.1 "Compatible triangulation", after Baxter, Barla, Anjyo (2008); the last resort
+//! after Aronov, Seidel, Souvaine, "On compatible triangulations of simple polygons" (1993).
+//!
+//! A piece is a list of corresponding vertices that bound a simple polygon in every pose. Each piece is
+//! 1. triangulated with diagonals that have line of sight in all poses, or divided by as many of them as possible
+//!    ([`line_of_sight`]); what has none left is
+//! 2. divided by a Steiner point that several vertices see in all poses ([`single_steiner`]), or
+//! 3. divided by a path of several Steiner points ([`link_path`]), or, if no such path shrinks it,
+//! 4. triangulated as the overlay of the poses' own triangulations on a convex polygon ([`chord_overlay`]), which
+//!    always exists.
+//!
+//! At the end Steiner points that are not needed are taken out again ([`decimate`]).
+//!
+//! Differences from the paper: stage 1 chooses its diagonals by dynamic programming instead of taking the first found;
+//! stage 2 joins its point to all vertices it can see, not to two; a partition has to shrink every part, which the
+//! paper does not ask for and without which it may not end; stage 4 and the decimation are not in the paper.
+//!
+//! Guarantee: every triangle is positive in every pose by an exact predicate. Cost: quadratic in the vertices of a
+//! piece for visibility, cubic within pieces of at most 64 vertices for Steiner points.
+
+mod chord_overlay;
+mod convex;
+mod decimate;
+mod ear_clipping;
+mod line_of_sight;
+mod link_path;
+mod single_steiner;
+mod visibility;
+
+#[cfg(test)]
+mod tests;
+
+use super::CompatibleMesh;
+use super::editable::EditableMesh;
+use crate::math::Point;
+use crate::mesh::{TopologyError, geometry};
+use crate::outline::Outline;
+use ear_clipping::triangulate_polygon;
+use single_steiner::Hub;
+use visibility::{Relation, Sight};
+
+/// Steiner points by the stage that added them, and how many were taken out again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct TriangulateReport {
+    /// Added as hubs of a star or partition (stage 2).
+    pub single: usize,
+    /// Added on link paths (stage 3).
+    pub link: usize,
+    /// Added by chord overlays (stage 4).
+    pub overlay: usize,
+    /// Taken out by the decimation.
+    pub decimated: usize,
+}
+
+/// Why polygons could not be triangulated compatibly.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TriangulateError {
+    /// There is no polygon.
+    #[error("compatible triangulation needs at least one polygon")]
+    NoPose,
+    /// Vertex counts differ.
+    #[error(
+        "ring {ring} of pose {pose} has {found} vertices, in pose 0 it has {expected}; corresponding rings need equal counts"
+    )]
+    CountsDiffer {
+        /// Which pose.
+        pose: usize,
+        /// Which ring; 0 is the outer one.
+        ring: usize,
+        /// Its vertices, or 0 for a missing ring.
+        found: usize,
+        /// Vertices of the same ring in pose 0.
+        expected: usize,
+    },
+    /// Polygons with holes.
+    #[error(
+        "pose {pose} has {holes} holes; fill them (holes = \"fill\"), polygons with holes cannot be triangulated yet"
+    )]
+    Holes {
+        /// Which pose.
+        pose: usize,
+        /// How many.
+        holes: usize,
+    },
+    /// A corridor of a polygon is so narrow that no valid mesh was found in double precision.
+    #[error(
+        "the polygons are too narrow to be meshed in double precision near ({x:.6}, {y:.6}) in pose {pose}; widen the drawing there"
+    )]
+    TooNarrow {
+        /// A pose where it shows.
+        pose: usize,
+        /// A vertex of the piece that failed.
+        x: f64,
+        /// A vertex of the piece that failed.
+        y: f64,
+    },
+    /// The result is no surface; reported rather than handed on.
+    #[error("the triangulation is no surface: {0}")]
+    Topology(#[from] TopologyError),
+}
+
+/// Triangulates N polygons compatibly.
+///
+/// Vertex `k` of ring `r` is vertex `k` of the mesh plus the lengths of the rings before; Steiner points follow.
+///
+/// # Errors
+/// [`TriangulateError`] if the polygons do not correspond, have holes, or are too narrow for double precision.
+pub fn triangulate(polygons: &[Outline]) -> Result<(CompatibleMesh, TriangulateReport), TriangulateError> {
+    let first = polygons.first().ok_or(TriangulateError::NoPose)?;
+    for (pose, polygon) in polygons.iter().enumerate() {
+        for ring in 0..first.rings().len().max(polygon.rings().len()) {
+            let count = |outline: &Outline| outline.rings().get(ring).map_or(0, |r| r.len());
+            let (found, expected) = (count(polygon), count(first));
+            if found != expected {
+                return Err(TriangulateError::CountsDiffer {
+                    pose,
+                    ring,
+                    found,
+                    expected,
+                });
+            }
+        }
+        if !polygon.holes().is_empty() {
+            return Err(TriangulateError::Holes {
+                pose,
+                holes: polygon.holes().len(),
+            });
+        }
+    }
+    let positions: Vec<Vec<Point>> = polygons
+        .iter()
+        .map(|polygon| polygon.outer().points().to_vec())
+        .collect();
+    let count = first.outer().len();
+    let mut division = Division {
+        positions,
+        triangles: Vec::new(),
+        report: TriangulateReport::default(),
+    };
+    division.run((0..count).collect())?;
+
+    let mut mesh = EditableMesh::new(division.positions, &division.triangles);
+    let mut report = division.report;
+    report.decimated = decimate::decimate(&mut mesh, count);
+    let rings = vec![(0..count).collect()];
+    let steiner = report.single + report.link + report.overlay - report.decimated;
+    Ok((mesh.finish(&rings, steiner)?, report))
+}
+
+/// The divide-and-conquer state: all vertices so far, and the triangles that are settled.
+struct Division {
+    positions: Vec<Vec<Point>>,
+    triangles: Vec<[usize; 3]>,
+    report: TriangulateReport,
+}
+
+impl Division {
+    fn run(&mut self, polygon: Vec<usize>) -> Result<(), TriangulateError> {
+        let mut pieces = vec![polygon];
+        while let Some(piece) = pieces.pop() {
+            if let [a, b, c] = piece[..] {
+                self.triangles.push([a, b, c]);
+                continue;
+            }
+            let sights = self.look(&piece)?;
+            let common = common_pairs(&sights);
+            let quality = |triangle: [usize; 3]| {
+                sights
+                    .iter()
+                    .map(|sight| geometry::smallest_angle_rad(geometry::corners(&sight.points, triangle)))
+                    .fold(f64::INFINITY, f64::min)
+            };
+            if let Some(triangles) = line_of_sight::best_triangulation(piece.len(), &common, quality) {
+                self.triangles
+                    .extend(triangles.into_iter().map(|t| t.map(|k| piece[k])));
+                continue;
+            }
+            let diagonals = line_of_sight::largest_partition(piece.len(), &common);
+            if diagonals.is_empty() {
+                self.divide_stuck(&piece, &sights, &mut pieces)?;
+            } else {
+                let faces = line_of_sight::faces(piece.len(), &diagonals);
+                pieces.extend(
+                    faces
+                        .into_iter()
+                        .map(|face| face.into_iter().map(|k| piece[k]).collect()),
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// Divides a piece without any common diagonal.
+    fn divide_stuck(
+        &mut self,
+        piece: &[usize],
+        sights: &[Sight],
+        pieces: &mut Vec<Vec<usize>>,
+    ) -> Result<(), TriangulateError> {
+        if let Some(hub) = single_steiner::star(sights).or_else(|| single_steiner::best_hub(sights)) {
+            self.report.single += 1;
+            self.join_hub(piece, &hub, pieces);
+            return Ok(());
+        }
+        if let Some(path) = link_path::shortest_path(sights) {
+            self.report.link += path.interior[0].len();
+            self.join_path(piece, &path, pieces);
+            return Ok(());
+        }
+        let overlay = chord_overlay::overlay(sights).ok_or_else(|| self.too_narrow(piece))?;
+        self.report.overlay += overlay.steiner_count();
+        let start = self.positions[0].len();
+        for (positions, added) in self.positions.iter_mut().zip(&overlay.points) {
+            positions.extend_from_slice(added);
+        }
+        let global = |k: usize| {
+            if k < piece.len() {
+                piece[k]
+            } else {
+                start + k - piece.len()
+            }
+        };
+        self.triangles.extend(overlay.triangles.iter().map(|t| t.map(global)));
+        Ok(())
+    }
+
+    fn join_hub(&mut self, piece: &[usize], hub: &Hub, pieces: &mut Vec<Vec<usize>>) {
+        let vertex = self.add_vertex(hub.points.iter().copied());
+        for (s, &from) in hub.spokes.iter().enumerate() {
+            let to = hub.spokes[(s + 1) % hub.spokes.len()];
+            let mut part = chain(piece, from, to);
+            part.push(vertex);
+            pieces.push(part);
+        }
+    }
+
+    fn join_path(&mut self, piece: &[usize], path: &link_path::LinkPath, pieces: &mut Vec<Vec<usize>>) {
+        let length = path.interior[0].len();
+        let vertices: Vec<usize> = (0..length)
+            .map(|k| self.add_vertex(path.interior.iter().map(|points| points[k])))
+            .collect();
+        let mut first = chain(piece, path.from, path.to);
+        first.extend(vertices.iter().rev());
+        let mut second = chain(piece, path.to, path.from);
+        second.extend(&vertices);
+        pieces.push(first);
+        pieces.push(second);
+    }
+
+    fn add_vertex(&mut self, places: impl IntoIterator<Item = Point>) -> usize {
+        for (positions, place) in self.positions.iter_mut().zip(places) {
+            positions.push(place);
+        }
+        self.positions[0].len() - 1
+    }
+
+    fn look(&self, piece: &[usize]) -> Result<Vec<Sight>, TriangulateError> {
+        self.positions
+            .iter()
+            .map(|positions| {
+                let points: Vec<Point> = piece.iter().map(|&v| positions[v]).collect();
+                let triangles = triangulate_polygon(&points).ok_or_else(|| self.too_narrow(piece))?;
+                Ok(Sight::new(points, triangles))
+            })
+            .collect()
+    }
+
+    fn too_narrow(&self, piece: &[usize]) -> TriangulateError {
+        let place = self.positions[0][piece[0]];
+        TriangulateError::TooNarrow {
+            pose: 0,
+            x: place.x,
+            y: place.y,
+        }
+    }
+}
+
+/// The pairs of vertices with line of sight in every pose.
+fn common_pairs(sights: &[Sight]) -> Relation {
+    let mut common = Relation::full(sights[0].points.len());
+    for sight in sights {
+        common.intersect(&sight.visible_pairs());
+    }
+    common
+}
+
+/// The vertices of a cyclic list from position `from` to position `to`, both included.
+fn chain(piece: &[usize], from: usize, to: usize) -> Vec<usize> {
+    let count = piece.len();
+    (0..=(to + count - from) % count)
+        .map(|k| piece[(from + k) % count])
+        .collect()
+}

@@ -1,0 +1,246 @@
+//! Stage II: one interior Steiner point that several vertices see in all poses (NWM 3.1).
+//!
+//! The paper joins one pair of vertices over one point. Here the point is joined to every vertex that can be made to
+//! see it in all poses: to all of them where each pose has a kernel (always so for four and five vertices), otherwise
+//! to the pair that starts the search and all that can be added. The polygon falls into one part between every two
+//! successive spokes; a partition is taken only if every part has fewer vertices than the polygon, so that the
+//! recursion ends.
+//!
+//! Regions are found by clipping triangles with the cones of [`super::visibility`]; the point is the centre of the
+//! region, and each spoke is then proven with exact predicates. Cost O(m^3) for the polygon of m vertices, which is
+//! why larger polygons skip this stage.
+
+use super::convex::Convex;
+use super::visibility::{Sight, View};
+use crate::math::{Point, point, predicate};
+
+/// The largest polygon that is searched for pairs.
+const LARGEST_POLYGON: usize = 64;
+
+/// How many starting pairs are tried, those with the roomiest common region first.
+const STARTING_PAIRS: usize = 150;
+
+/// A region is used if the circle about its centre has at least this radius, as a fraction of the polygon's diagonal.
+const SMALLEST_CLEARANCE: f64 = 1e-7;
+
+/// One Steiner point: its place in each pose, and the vertices it is joined to, in order.
+#[derive(Debug, Clone)]
+pub(super) struct Hub {
+    pub(super) points: Vec<Point>,
+    pub(super) spokes: Vec<usize>,
+}
+
+/// A point that all vertices see, in every pose; `None` if some pose has no kernel.
+pub(super) fn star(sights: &[Sight]) -> Option<Hub> {
+    let count = sights.first()?.points.len();
+    let points = sights
+        .iter()
+        .map(|sight| {
+            let (low, high) = point::bounding_box(&sight.points)?;
+            let corners = vec![low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)];
+            let mut kernel = Convex::new(corners);
+            for k in 0..count {
+                kernel.clip(sight.points[k], sight.points[(k + 1) % count]);
+            }
+            let (centre, _) = kernel.centre()?;
+            let positive = |k: usize| predicate::is_positive(centre, sight.points[k], sight.points[(k + 1) % count]);
+            (0..count).all(positive).then_some(centre)
+        })
+        .collect::<Option<Vec<Point>>>()?;
+    Some(Hub {
+        points,
+        spokes: (0..count).collect(),
+    })
+}
+
+/// The hub that the most vertices see in all poses, if it divides the polygon into smaller parts.
+pub(super) fn best_hub(sights: &[Sight]) -> Option<Hub> {
+    let count = sights.first()?.points.len();
+    if count > LARGEST_POLYGON {
+        return None;
+    }
+    let rooms: Vec<Rooms> = sights.iter().map(Rooms::new).collect();
+    let mut starts: Vec<(f64, usize, usize)> = Vec::new();
+    for i in 0..count {
+        for j in i + 2..count {
+            let clearance = rooms
+                .iter()
+                .map(|room| room.roomiest(&[i, j]).map_or(0.0, |(_, clearance)| clearance))
+                .fold(f64::INFINITY, f64::min);
+            if clearance > SMALLEST_CLEARANCE {
+                starts.push((clearance, i, j));
+            }
+        }
+    }
+    starts.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    starts
+        .iter()
+        .take(STARTING_PAIRS)
+        .filter_map(|&(_, i, j)| grown_hub(&rooms, i, j, count))
+        .max_by(|a, b| a.0.len().cmp(&b.0.len()).then(a.1.total_cmp(&b.1)).then(b.0.cmp(&a.0)))
+        .and_then(|(spokes, _)| {
+            let points = rooms
+                .iter()
+                .map(|room| room.place(&spokes))
+                .collect::<Option<Vec<Point>>>()?;
+            Some(Hub { points, spokes })
+        })
+}
+
+/// From the pair `i j`, all vertices that can be added one after another; `None` if a part would not shrink.
+fn grown_hub(rooms: &[Rooms], i: usize, j: usize, count: usize) -> Option<(Vec<usize>, f64)> {
+    let mut spokes = vec![i, j];
+    let mut triangles: Vec<usize> = rooms
+        .iter()
+        .map(|room| room.roomiest(&spokes).map(|(t, _)| t))
+        .collect::<Option<_>>()?;
+    let mut clearance = 0.0;
+    // Farthest along the polygon first: spreads the spokes.
+    let mut others: Vec<usize> = (0..count).filter(|&k| k != i && k != j).collect();
+    let ring_distance = |a: usize, b: usize| (a + count - b).rem_euclid(count).min((b + count - a).rem_euclid(count));
+    others.sort_by_key(|&k| std::cmp::Reverse(ring_distance(k, i).min(ring_distance(k, j))));
+    for k in others {
+        spokes.push(k);
+        let grown: Option<Vec<(usize, f64)>> = rooms
+            .iter()
+            .zip(&triangles)
+            .map(|(room, &t)| {
+                let here = room.clearance_in(t, &spokes).map(|clearance| (t, clearance));
+                here.or_else(|| room.roomiest(&spokes))
+                    .filter(|found| found.1 > SMALLEST_CLEARANCE)
+            })
+            .collect();
+        match grown {
+            Some(found) => {
+                clearance = found.iter().map(|f| f.1).fold(f64::INFINITY, f64::min);
+                triangles = found.into_iter().map(|f| f.0).collect();
+            }
+            None => {
+                spokes.pop();
+            }
+        }
+    }
+    spokes.sort_unstable();
+    let shrinks = (0..spokes.len()).all(|s| {
+        let gap = (spokes[(s + 1) % spokes.len()] + count - spokes[s]) % count;
+        gap + 2 < count
+    });
+    let proven = shrinks && rooms.iter().all(|room| room.place(&spokes).is_some());
+    proven.then_some((spokes, clearance))
+}
+
+/// One pose's triangles with what every vertex sees of them.
+struct Rooms<'a> {
+    sight: &'a Sight,
+    /// For each triangle, the view of each vertex into it.
+    views: Vec<Vec<Option<View>>>,
+    diagonal: f64,
+}
+
+impl<'a> Rooms<'a> {
+    fn new(sight: &'a Sight) -> Self {
+        let count = sight.points.len();
+        let mut views = vec![vec![None; count]; sight.triangles.len()];
+        for (vertex, seen) in (0..count).map(|vertex| (vertex, sight.views(vertex))) {
+            for view in seen {
+                views[view.triangle][vertex] = Some(view);
+            }
+        }
+        Self {
+            sight,
+            views,
+            diagonal: point::diagonal(&sight.points),
+        }
+    }
+
+    /// The part of triangle `t` that all of `vertices` see.
+    fn region(&self, t: usize, vertices: &[usize]) -> Option<Convex> {
+        let corners = self.sight.triangles[t].map(|v| self.sight.points[v]);
+        let mut region = Convex::new(corners.to_vec());
+        for &v in vertices {
+            if let Some((right, left)) = self.views[t][v]?.rays {
+                let eye = self.sight.points[v];
+                region.clip(eye, self.sight.points[right]);
+                region.clip(self.sight.points[left], eye);
+            }
+        }
+        Some(region)
+    }
+
+    fn clearance_in(&self, t: usize, vertices: &[usize]) -> Option<f64> {
+        let (_, clearance) = self.region(t, vertices)?.centre()?;
+        Some(clearance / self.diagonal)
+    }
+
+    /// The triangle in which the common region of `vertices` is roomiest, and its relative clearance.
+    fn roomiest(&self, vertices: &[usize]) -> Option<(usize, f64)> {
+        (0..self.sight.triangles.len())
+            .filter_map(|t| self.clearance_in(t, vertices).map(|clearance| (t, clearance)))
+            .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
+    }
+
+    /// A point that all `spokes` see, proven.
+    fn place(&self, spokes: &[usize]) -> Option<Point> {
+        let (t, _) = self.roomiest(spokes)?;
+        let (centre, _) = self.region(t, spokes)?.centre()?;
+        let [a, b, c] = self.sight.triangles[t].map(|v| self.sight.points[v]);
+        let inside = predicate::is_positive(a, b, centre)
+            && predicate::is_positive(b, c, centre)
+            && predicate::is_positive(c, a, centre);
+        (inside && spokes.iter().all(|&v| sees(&self.sight.points, v, centre))).then_some(centre)
+    }
+}
+
+/// Whether the segment from vertex `v` to the interior point `p` touches the polygon at `v` only. Exact.
+pub(super) fn sees(points: &[Point], v: usize, p: Point) -> bool {
+    let count = points.len();
+    (0..count).all(|e| {
+        let f = (e + 1) % count;
+        if e == v || f == v {
+            let other = if e == v { f } else { e };
+            predicate::orientation(points[v], points[other], p).is_ne()
+                || (points[other] - points[v]).dot(&(p - points[v])) < 0.0
+        } else {
+            !predicate::touch(points[e], points[f], points[v], p)
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::visibility::tests::sight_of;
+    use super::*;
+
+    fn points(list: &[[f64; 2]]) -> Vec<Point> {
+        list.iter().copied().map(Point::from).collect()
+    }
+
+    #[test]
+    fn two_quads_with_different_dents_share_a_star() {
+        let first = points(&[[0.0, 0.0], [4.0, 0.0], [1.0, 1.0], [0.0, 4.0]]);
+        let second = points(&[[0.0, 0.0], [1.0, 1.0], [4.0, 0.0], [1.0, 4.0]]);
+        let sights = [sight_of(first), sight_of(second)];
+        let hub = star(&sights).expect("every quad has a kernel");
+        assert_eq!(hub.spokes, vec![0, 1, 2, 3]);
+    }
+
+    #[test]
+    fn a_hub_sees_its_spokes_in_a_corridor() {
+        // A U: no kernel, but points at the bend see much.
+        let shape = points(&[
+            [0.0, 0.0],
+            [9.0, 0.0],
+            [9.0, 9.0],
+            [8.0, 9.0],
+            [8.0, 1.0],
+            [1.0, 1.0],
+            [1.0, 9.0],
+            [0.0, 9.0],
+        ]);
+        let sights = [sight_of(shape.clone())];
+        assert!(star(&sights).is_none());
+        let hub = best_hub(&sights).expect("a hub");
+        assert!(hub.spokes.len() >= 4, "{hub:?}");
+        assert!(hub.spokes.iter().all(|&v| sees(&shape, v, hub.points[0])));
+    }
+}
