@@ -1,0 +1,87 @@
+//! Why a file is no drawing.
+
+use std::path::PathBuf;
+
+use crate::outline::OutlineError;
+
+/// Why a drawing cannot be used. Only [`InputError::Unreadable`] knows a path; whoever reads bytes adds the name.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum InputError {
+    /// The file cannot be opened or read.
+    #[error("cannot read {}: {source}; check the path and its permissions", path.display())]
+    Unreadable {
+        /// Which file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file has no bytes.
+    #[error("the file is empty; export the drawing again")]
+    EmptyFile,
+    /// No known image format starts like this.
+    #[error("this is not a PNG, JPEG, WebP, GIF or BMP image; export the drawing as PNG")]
+    NotAnImage,
+    /// The image is damaged or of an unsupported kind.
+    #[error("the image cannot be decoded ({reason}); export the drawing again as PNG")]
+    Undecodable {
+        /// What the decoder said.
+        reason: String,
+    },
+    /// The image has no pixels.
+    #[error("the image is {width} x {height} pixels: there is nothing in it")]
+    NoPixels {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// The image is larger than is read.
+    #[error(
+        "the image claims {width} x {height} pixels; at most {largest_side} a side and {largest_count} in all are read, so scale it down"
+    )]
+    TooManyPixels {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Most columns or rows.
+        largest_side: u32,
+        /// Most pixels.
+        largest_count: u64,
+    },
+    /// The threshold is not strictly between 0 and 1.
+    #[error("the threshold is {threshold}, but a coverage that counts as inside lies between 0.01 and 0.99")]
+    BadThreshold {
+        /// The value given.
+        threshold: f64,
+    },
+    /// No pixel is covered enough.
+    #[error(
+        "there is no drawing in the {width} x {height} image: no pixel {}; give it a transparent or plain background",
+        if *by_alpha { "is opaque enough" } else { "differs from the border's colour" }
+    )]
+    NothingDrawn {
+        /// Columns.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// Whether the alpha channel decided, not the colour.
+        by_alpha: bool,
+    },
+    /// The largest part is only a few pixels large.
+    #[error(
+        "the largest part, near ({x:.1}, {y:.1}), covers only {area:.2} pixels; draw it larger or lower the threshold"
+    )]
+    TooSmall {
+        /// Its area, in pixels.
+        area: f64,
+        /// Its centroid.
+        x: f64,
+        /// Its centroid.
+        y: f64,
+    },
+    /// The contour is no outline.
+    #[error("the outline cannot be used: {0}")]
+    Outline(#[from] OutlineError),
+}
