@@ -13,6 +13,10 @@ const SWEEPS: usize = 2;
 /// Bisections of a step that cannot be taken whole: the step is found to 1/64 of its length.
 const BISECTIONS: usize = 6;
 
+/// An outline point this far outside an old edge, relative to the longer side of the swept triangle, is taken to touch
+/// it. Points further out do not exist: the polygon encloses the outline.
+const TOUCHING: f64 = 1e-9;
+
 /// Tightens the rings of one pose (all of them: they must not meet) around `originals`.
 ///
 /// Cost O(#vertices * (#outline points + #vertices)).
@@ -79,9 +83,12 @@ fn swept_over(fixed: Point, at: Point, moved: Point, p: Point) -> bool {
     if sense.is_eq() {
         return false;
     }
-    let inside = |a, b| {
-        let side = predicate::orientation(a, b, p);
-        side == sense || side.is_eq()
+    // Outline points that the polygon touched lie on its old edges only up to rounding: they count as inside.
+    let slack = TOUCHING * (at - fixed).norm().max((moved - at).norm());
+    let inside = |a: Point, b: Point| {
+        let double_area = point::cross(b - a, p - a);
+        let towards = if sense.is_gt() { double_area } else { -double_area };
+        towards >= -slack * (b - a).norm()
     };
     inside(fixed, at) && inside(at, moved) && predicate::orientation(moved, fixed, p) == sense
 }

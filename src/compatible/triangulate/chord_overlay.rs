@@ -426,7 +426,7 @@ mod tests {
     fn the_overlay_of_opposite_stars_is_positive_in_both() {
         let radii = |phase: usize| {
             (0..12)
-                .map(|k| if (k + phase) % 2 == 0 { 1.0 } else { 0.3 })
+                .map(|k| if (k + phase).is_multiple_of(2) { 1.0 } else { 0.3 })
                 .collect::<Vec<_>>()
         };
         let sights = [sight_of(star(&radii(0))), sight_of(star(&radii(1)))];
