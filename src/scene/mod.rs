@@ -1,1 +1,23 @@
-//! The scene file.
+//! The scene file: which drawings, where they lie in the pose space, how they are meshed, blended and played.
+//!
+//! `scene.toml` -> [`Scene`]. A scene is validated once, here: names are unique, numbers finite, poses placed apart,
+//! sources inside the scene's folder. Later stages take its fields as they are. Every [`SceneError`] carries the file
+//! and, where there is one, the line.
+//!
+//! Keys that a later release will serve are known and refused by name, never ignored.
+
+mod animation;
+mod convert;
+mod error;
+mod file;
+mod new;
+mod settings;
+mod source;
+
+pub use animation::{Animation, Key};
+pub use error::{SceneError, SceneProblem};
+pub use new::{NewPose, scene_text};
+pub use settings::{
+    Anchor, Background, BlendReference, BlendSettings, Facing, Holes, InputSettings, MeshSettings, PoseSpaceSettings,
+    Provider, PseudoPose, Radial, Scene, SceneLandmark, ScenePose, Stretch,
+};

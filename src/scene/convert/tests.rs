@@ -1,0 +1,205 @@
+use super::*;
+
+fn parse(text: &str) -> Result<Scene, SceneError> {
+    Scene::parse(text, Path::new("cat/scene.toml"))
+}
+
+const TWO: &str = "version = 1\n[[pose]]\nname = \"a\"\nsource = \"a.png\"\nat = [0, 0]\n[[pose]]\nname = \"b\"\nsource = \"b.svg\"\nat = [1.0, 0.5]\n";
+
+fn refused(text: &str) -> (Option<usize>, String) {
+    let error = parse(text).expect_err("it is refused");
+    assert!(error.to_string().starts_with("cat/scene.toml"), "{error}");
+    (error.line, error.to_string())
+}
+
+#[test]
+fn the_smallest_scene_has_the_documented_defaults() {
+    let scene = parse("version = 1\n[[pose]]\nname = \"a\"\nsource = \"a.png\"\n").expect("a scene");
+    assert_eq!(scene.poses[0].at, vec![0.0, 0.0]);
+    assert_eq!(scene.input, InputSettings::default());
+    assert_eq!(scene.mesh, MeshSettings::default());
+    assert_eq!(scene.pose_space, PoseSpaceSettings::default());
+    assert_eq!(scene.blend, BlendSettings::default());
+    assert_eq!(scene.texture_sharpness, 0.5);
+    assert_eq!((scene.animation.fps, scene.animation.size), (24.0, [1280, 720]));
+    assert_eq!(scene.animation.frame_count(), 1);
+    assert_eq!(scene.short_name(), "cat");
+}
+
+#[test]
+fn every_key_of_the_contract_is_known() {
+    let text = r##"
+version = 1
+reference = "a"
+[input]
+holes = "fill"
+threshold = 0.4
+[mesh]
+simplify = 0.01
+edge_length = 0.04
+[pose_space]
+provider = "rbf"
+radial = "thin-plate"
+epsilon = 1e-2
+bounded = false
+walls = []
+[blend]
+reference = "b"
+stretch = "limited"
+guard = "off"
+anchor = "foot"
+[texture]
+sharpness = 0.9
+[[pose]]
+name = "a"
+source = "a.png"
+at = [0, 0]
+mirror = true
+turns = -1
+[[pose]]
+name = "b"
+source = "b.svg"
+element = "body"
+at = [1.0, 0.5]
+[[pseudo_pose]]
+from = [0.5, 0.25]
+at = [0.6, 0.25]
+[[landmark]]
+name = "foot"
+at = { b = [12, 4.5] }
+path = false
+[animation]
+fps = 12
+loop = true
+size = [64, 48]
+background = "#ff000080"
+keys = [ { time = 0, at = [0, 0] }, { time = 2.0, at = [1, 1] } ]
+"##;
+    let scene = parse(text).expect("a scene");
+    assert_eq!(scene.reference, Some(0));
+    assert_eq!(scene.input.holes, Holes::Fill);
+    assert_eq!(scene.blend.reference, BlendReference::Pose(1));
+    assert_eq!(scene.blend.anchor, Anchor::Landmark(0));
+    assert_eq!((scene.poses[0].facing, scene.poses[0].turns), (Facing::Mirrored, -1));
+    assert_eq!(scene.poses[1].element.as_deref(), Some("body"));
+    assert_eq!(scene.landmarks[0].at, vec![None, Some(Point::new(12.0, 4.5))]);
+    assert_eq!(scene.animation.background, Background::Colour([255, 0, 0, 128]));
+    assert_eq!(scene.animation.frame_count(), 48);
+}
+
+#[test]
+fn unknown_keys_are_refused_with_their_line() {
+    let (line, message) = refused("version = 1\n[mesh]\nsimplfy = 0.1\n");
+    assert_eq!(line, Some(3));
+    assert!(message.contains("simplfy") && message.contains("simplify"), "{message}");
+    let (line, _) = refused(&format!("{TWO}colour = 3\n"));
+    assert_eq!(line, Some(10));
+}
+
+#[test]
+fn keys_of_later_releases_are_refused_by_name() {
+    for (text, line, word) in [
+        ("[[layer]]\nname = \"arm\"\n", 10, "layer"),
+        ("[pose_space]\nbounded = true\n", 11, "bounded"),
+        ("[pose_space]\nwalls = [[[0.2, 0.0], [0.2, 0.6]]]\n", 11, "walls"),
+        ("[blend]\nguard = \"repair\"\n", 11, "guard"),
+        (
+            "[[pose]]\nname = \"c\"\ndeform_of = \"a\"\nat = [5, 5]\n",
+            12,
+            "deform_of",
+        ),
+        (
+            "[[pose]]\nname = \"c\"\nsource = { body = \"c.svg\" }\nat = [5, 5]\n",
+            12,
+            "layer",
+        ),
+        (
+            "[[landmark]]\nname = \"c\"\npath = true\nat = { a = [[1, 1], [2, 2]] }\n",
+            12,
+            "path",
+        ),
+    ] {
+        let (found, message) = refused(&format!("{TWO}{text}"));
+        assert_eq!(found, Some(line), "{message}");
+        assert!(
+            message.contains(word) && message.contains("not supported yet"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn places_are_checked() {
+    let (line, message) = refused(&TWO.replace("[1.0, 0.5]", "[0.0, 0.0]"));
+    assert_eq!(line, Some(7));
+    assert!(
+        message.contains("'a' and 'b'") && message.contains("[0.0, 0.0]"),
+        "{message}"
+    );
+    assert!(refused(&TWO.replace("[1.0, 0.5]", "[nan, 0.0]")).1.contains("NaN"));
+    assert!(
+        refused(&TWO.replace("[1.0, 0.5]", "[1e300, 0.0]"))
+            .1
+            .contains("pose 'b'")
+    );
+    assert!(refused(&TWO.replace("[1.0, 0.5]", "[1.0]")).1.contains("1 coordinates"));
+    assert!(
+        refused(&TWO.replace("at = [1.0, 0.5]", ""))
+            .1
+            .contains("pose 'b' has no `at`")
+    );
+}
+
+#[test]
+fn names_are_checked() {
+    assert!(refused(&TWO.replace("\"b\"", "\"a\"")).1.contains("used twice"));
+    assert!(refused(&TWO.replace("\"b\"", "\"\"")).1.contains("empty"));
+    let (line, message) = refused(&format!("{TWO}[[landmark]]\nname = \"nose\"\nat = {{ c = [1, 2] }}\n"));
+    assert_eq!(line, Some(12));
+    assert!(
+        message.contains("'nose'") && message.contains("'c'") && message.contains("'a', 'b'"),
+        "{message}"
+    );
+    assert!(refused(&format!("reference = \"z\"\n{TWO}")).1.contains("'z'"));
+}
+
+#[test]
+fn sources_stay_in_the_folder() {
+    let (line, message) = refused(&TWO.replace("b.svg", "../b.svg"));
+    assert_eq!(line, Some(8));
+    assert!(message.contains("'b'") && message.contains(".."), "{message}");
+}
+
+#[test]
+fn keys_must_be_sorted_and_versions_match() {
+    let keys = "[animation]\nkeys = [\n{ time = 1, at = [0, 0] },\n{ time = 1, at = [1, 0] } ]\n";
+    assert_eq!(refused(&format!("{TWO}{keys}")).0, Some(13));
+    assert!(refused("version = 2\n").1.contains("version 2"));
+    assert!(refused("").1.contains("version"));
+}
+
+#[test]
+fn without_keys_every_pose_is_visited_for_the_same_time() {
+    let scene = parse(TWO).expect("a scene");
+    assert_eq!(scene.animation.duration(), 2.0);
+    assert_eq!(scene.animation.at(0.0), vec![0.0, 0.0]);
+    assert_eq!(scene.animation.at(1.0), vec![1.0, 0.5]);
+    assert_eq!(scene.animation.at(2.0), vec![0.0, 0.0]);
+}
+
+#[test]
+fn a_new_scene_reads_back() {
+    let poses =
+        [("a", "a.png"), ("say \"hi\"", "b c.png"), ("c", "c.svg")].map(|(name, source)| super::super::NewPose {
+            name: name.to_owned(),
+            source: source.to_owned(),
+        });
+    let text = super::super::scene_text(&poses);
+    let scene = parse(&text).expect("a scene");
+    assert_eq!(scene.names(), ["a", "say \"hi\"", "c"]);
+    // The commented landmark is valid once the comment signs go.
+    let open = text
+        .replace("# [[landmark]]\n# name", "[[landmark]]\nname")
+        .replace("# at = {", "at = {");
+    assert_eq!(parse(&open).expect("a scene").landmarks.len(), 1);
+}

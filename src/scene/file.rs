@@ -1,0 +1,138 @@
+//! The scene file as it is written, before anything is checked but names and types of keys.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use toml::{Spanned, Value};
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneFile {
+    pub(super) version: Spanned<i64>,
+    pub(super) reference: Option<Spanned<String>>,
+    #[serde(default)]
+    pub(super) input: InputTable,
+    #[serde(default)]
+    pub(super) mesh: MeshTable,
+    #[serde(default)]
+    pub(super) pose_space: PoseSpaceTable,
+    #[serde(default)]
+    pub(super) blend: BlendTable,
+    #[serde(default)]
+    pub(super) texture: TextureTable,
+    #[serde(default)]
+    pub(super) pose: Vec<Spanned<PoseTable>>,
+    #[serde(default)]
+    pub(super) pseudo_pose: Vec<Spanned<PseudoPoseTable>>,
+    #[serde(default)]
+    pub(super) landmark: Vec<Spanned<LandmarkTable>>,
+    #[serde(default)]
+    pub(super) layer: Vec<Spanned<LayerTable>>,
+    #[serde(default)]
+    pub(super) animation: AnimationTable,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct InputTable {
+    pub(super) holes: Option<Spanned<String>>,
+    pub(super) threshold: Option<Spanned<f64>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MeshTable {
+    pub(super) simplify: Option<Spanned<f64>>,
+    pub(super) edge_length: Option<Spanned<f64>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PoseSpaceTable {
+    pub(super) provider: Option<Spanned<String>>,
+    pub(super) radial: Option<Spanned<String>>,
+    pub(super) epsilon: Option<Spanned<f64>>,
+    pub(super) bounded: Option<Spanned<bool>>,
+    pub(super) walls: Option<Spanned<Vec<Vec<Vec<f64>>>>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BlendTable {
+    pub(super) reference: Option<Spanned<String>>,
+    pub(super) stretch: Option<Spanned<String>>,
+    pub(super) guard: Option<Spanned<String>>,
+    pub(super) anchor: Option<Spanned<String>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TextureTable {
+    pub(super) sharpness: Option<Spanned<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PoseTable {
+    pub(super) name: Spanned<String>,
+    /// A path, or with layers a table of paths.
+    pub(super) source: Option<Spanned<Value>>,
+    pub(super) element: Option<Spanned<Value>>,
+    pub(super) at: Option<Spanned<Vec<f64>>>,
+    pub(super) mirror: Option<bool>,
+    pub(super) turns: Option<Spanned<i64>>,
+    pub(super) deform_of: Option<Spanned<String>>,
+    pub(super) handles: Option<Spanned<Vec<HandleTable>>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(
+    dead_code,
+    reason = "read so that misspelt keys are found; the key itself is refused"
+)]
+pub(super) struct HandleTable {
+    pub(super) from: Vec<f64>,
+    pub(super) to: Vec<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PseudoPoseTable {
+    pub(super) from: Spanned<Vec<f64>>,
+    pub(super) at: Spanned<Vec<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LandmarkTable {
+    pub(super) name: Spanned<String>,
+    /// A point a pose, or with `path` a polyline a pose.
+    pub(super) at: BTreeMap<String, Spanned<Value>>,
+    pub(super) path: Option<Spanned<bool>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LayerTable {
+    #[expect(dead_code, reason = "layers are refused as a whole")]
+    pub(super) name: String,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AnimationTable {
+    pub(super) fps: Option<Spanned<f64>>,
+    #[serde(rename = "loop")]
+    pub(super) looped: Option<bool>,
+    pub(super) size: Option<Spanned<Vec<i64>>>,
+    pub(super) background: Option<Spanned<String>>,
+    pub(super) keys: Option<Spanned<Vec<Spanned<KeyTable>>>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct KeyTable {
+    pub(super) time: f64,
+    pub(super) at: Vec<f64>,
+}

@@ -1,0 +1,56 @@
+//! The text of a new scene file.
+
+use std::fmt::Write as _;
+
+/// A drawing for a new scene.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NewPose {
+    /// Its name.
+    pub name: String,
+    /// Its source, relative to the scene file.
+    pub source: String,
+}
+
+/// A scene file for `poses`, laid out automatically, with the keys an artist is likely to want next as comments.
+#[must_use]
+pub fn scene_text(poses: &[NewPose]) -> String {
+    let mut text = String::from(
+        "version = 1\n\
+         # Poses without `at` are laid out evenly on a circle. Give all of them a place to lay them out yourself:\n\
+         # related poses near one another, x and y meaning whatever suits the character.\n",
+    );
+    for pose in poses {
+        // A TOML value knows its own quoting.
+        let quoted = |s: &str| toml::Value::String(s.to_owned()).to_string();
+        let _ = write!(
+            text,
+            "\n[[pose]]\nname = {}\nsource = {}\n# at = [0.0, 0.0]\n",
+            quoted(&pose.name),
+            quoted(&pose.source)
+        );
+    }
+    text.push_str(
+        "\n# A point that corresponds, where the automatic match errs: source pixels or SVG units, a pose may lack it.\n\
+         # [[landmark]]\n# name = \"nose\"\n",
+    );
+    let _ = writeln!(
+        text,
+        "# at = {{ {} }}",
+        poses
+            .iter()
+            .map(|p| format!("{} = [0.0, 0.0]", toml_key(&p.name)))
+            .collect::<Vec<_>>()
+            .join(", ")
+    );
+    text.push_str("\n[animation]\nfps = 24\nsize = [1280, 720]\nbackground = \"transparent\"\n# Without keys the animation is a loop through all poses.\n# loop = true\n# keys = [ { time = 0.0, at = [0.0, 0.0] }, { time = 1.0, at = [1.0, 0.0] } ]\n");
+    text
+}
+
+fn toml_key(name: &str) -> String {
+    let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+    if bare {
+        name.to_owned()
+    } else {
+        toml::Value::String(name.to_owned()).to_string()
+    }
+}

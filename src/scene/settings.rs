@@ -1,0 +1,257 @@
+//! The validated scene.
+
+use std::path::PathBuf;
+
+use super::Animation;
+use crate::math::Point;
+
+/// A scene: everything the artist says about a character.
+///
+/// Every pose has a place of the same dimension, no two at the same; pose indices are in range; numbers are finite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// The scene file.
+    pub file: PathBuf,
+    /// The pose whose outline is `B0` (NWM 3.1); `None` lets the matching choose.
+    pub reference: Option<usize>,
+    /// How drawings become outlines.
+    pub input: InputSettings,
+    /// How fine the mesh is.
+    pub mesh: MeshSettings,
+    /// How weights fall off over the pose space.
+    pub pose_space: PoseSpaceSettings,
+    /// How shapes are blended.
+    pub blend: BlendSettings,
+    /// How sharply textures follow the nearest pose, `sigma`, from 0 (as the shape) to 1 (nearest pose only).
+    pub texture_sharpness: f64,
+    /// The poses, at least one.
+    pub poses: Vec<ScenePose>,
+    /// Blends that are wanted elsewhere than they are (SBE 4).
+    pub pseudo_poses: Vec<PseudoPose>,
+    /// Points that correspond.
+    pub landmarks: Vec<SceneLandmark>,
+    /// What is played.
+    pub animation: Animation,
+}
+
+/// Whether holes of the drawings are holes of the shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Holes {
+    /// They are, and correspond between the poses.
+    #[default]
+    Keep,
+    /// The shape is filled; what is transparent in the drawing stays transparent in its texture.
+    Fill,
+}
+
+/// How drawings become outlines.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InputSettings {
+    /// Whether holes count.
+    pub holes: Holes,
+    /// The coverage, between 0 and 1, that counts as inside.
+    pub threshold: f64,
+}
+
+impl Default for InputSettings {
+    /// Holes kept, outline at half coverage.
+    fn default() -> Self {
+        Self {
+            holes: Holes::Keep,
+            threshold: 0.5,
+        }
+    }
+}
+
+/// How fine the mesh is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshSettings {
+    /// The error of the simplified boundary, as a fraction of a pose's diagonal.
+    pub simplify: f64,
+    /// The length of the mesh's edges, as a fraction of a pose's diagonal.
+    pub edge_length: f64,
+}
+
+impl Default for MeshSettings {
+    /// 2 % of the diagonal for the boundary, 5 % for the edges.
+    fn default() -> Self {
+        Self {
+            simplify: 0.02,
+            edge_length: 0.05,
+        }
+    }
+}
+
+/// Which weights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Provider {
+    /// Biharmonic on a mesh of the plane (NWM 4.1).
+    #[default]
+    Biharmonic,
+    /// Cardinal radial basis functions in any dimension (SBE 3).
+    Rbf,
+}
+
+/// Which radial function the cardinal basis uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Radial {
+    /// The cubic B-spline of SBE, with local support.
+    #[default]
+    BSpline,
+    /// The thin plate.
+    ThinPlate,
+}
+
+/// How weights fall off over the pose space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseSpaceSettings {
+    /// Which weights.
+    pub provider: Provider,
+    /// The radial function of [`Provider::Rbf`].
+    pub radial: Radial,
+    /// The weight of the squared gradient in [`Provider::Biharmonic`].
+    pub epsilon: f64,
+}
+
+impl Default for PoseSpaceSettings {
+    /// Biharmonic with epsilon 1e-3.
+    fn default() -> Self {
+        Self {
+            provider: Provider::default(),
+            radial: Radial::default(),
+            epsilon: 1e-3,
+        }
+    }
+}
+
+/// From which pose transformations are measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BlendReference {
+    /// An abstract mean, so that no pose is preferred.
+    #[default]
+    Canonical,
+    /// The pose of this index (the form of NWM 4.2).
+    Pose(usize),
+}
+
+/// How stretches are blended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Stretch {
+    /// Linearly.
+    #[default]
+    Linear,
+    /// With the shear limiting of NWM 4.2.
+    Limited,
+    /// In the logarithm, positive for every weight.
+    Log,
+}
+
+/// What keeps the blended shape in its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Anchor {
+    /// The area-weighted centroid moves linearly in the weights.
+    #[default]
+    Centroid,
+    /// The landmark of this index does.
+    Landmark(usize),
+}
+
+/// How shapes are blended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct BlendSettings {
+    /// From which pose.
+    pub reference: BlendReference,
+    /// How stretches are blended.
+    pub stretch: Stretch,
+    /// What stays in place.
+    pub anchor: Anchor,
+}
+
+/// Whether a drawing is used as it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Facing {
+    /// As drawn.
+    #[default]
+    AsDrawn,
+    /// Reflected left to right on input.
+    Mirrored,
+}
+
+/// One pose of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScenePose {
+    /// Its name.
+    pub name: String,
+    /// Its drawing, relative to the scene's folder; see [`Scene::source_path`].
+    pub source: PathBuf,
+    /// The line of the scene file that names the source.
+    pub source_line: usize,
+    /// The SVG element whose outline is meant.
+    pub element: Option<String>,
+    /// Its place in the pose space.
+    pub at: Vec<f64>,
+    /// Whether it is reflected.
+    pub facing: Facing,
+    /// Whole turns added to its mean rotation.
+    pub turns: i32,
+}
+
+/// A blend that is wanted elsewhere than it is found (SBE 4).
+#[derive(Debug, Clone, PartialEq)]
+pub struct PseudoPose {
+    /// Where the blend is found.
+    pub from: Vec<f64>,
+    /// Where it is wanted.
+    pub at: Vec<f64>,
+}
+
+/// A point that the artist names on several poses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneLandmark {
+    /// Its name.
+    pub name: String,
+    /// The line of the scene file.
+    pub line: usize,
+    /// Where it lies on each pose, in source pixels or SVG user units; `None` where the pose lacks it.
+    pub at: Vec<Option<Point>>,
+}
+
+/// What is behind the character.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Background {
+    /// Nothing.
+    #[default]
+    Transparent,
+    /// A colour: red, green, blue, alpha, not premultiplied.
+    Colour([u8; 4]),
+}
+
+impl Scene {
+    /// The dimension of the pose space.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.poses.first().map_or(0, |pose| pose.at.len())
+    }
+
+    /// The poses' names, in order.
+    #[must_use]
+    pub fn names(&self) -> Vec<String> {
+        self.poses.iter().map(|pose| pose.name.clone()).collect()
+    }
+
+    /// A short name for files made from this scene: the file's own, or its folder's if it is called `scene.toml`.
+    #[must_use]
+    pub fn short_name(&self) -> String {
+        let stem = self.file.file_stem().map(|s| s.to_string_lossy().into_owned());
+        let folder = self
+            .file
+            .parent()
+            .and_then(|p| p.file_name())
+            .map(|s| s.to_string_lossy().into_owned());
+        match (stem, folder) {
+            (Some(stem), Some(folder)) if stem == "scene" => folder,
+            (Some(stem), _) => stem,
+            _ => "scene".to_owned(),
+        }
+    }
+}
