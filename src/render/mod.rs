@@ -1,1 +1,22 @@
-//! Rasterising.
+//! From blended meshes to pixels.
+//!
+//! A frame is a picture of one blended shape: the textures of all poses warped on its mesh and cross-faded
+//! ([`painter`](Painter)), cut out by the blended full-resolution outline ([`Silhouette`]). Alphas are not
+//! cross-faded, so the edge stays crisp while the colours change: each pose's texture is opaque beyond its own
+//! edge ([`Texture`]), and the one edge of the frame is drawn with the exact area that it covers of each pixel
+//! ([`coverage`]).
+
+mod camera;
+pub mod coverage;
+mod frame;
+mod nearest_seed;
+mod painter;
+pub mod raster;
+mod silhouette;
+mod texture;
+
+pub use camera::Camera;
+pub use frame::Frame;
+pub use painter::Painter;
+pub use silhouette::Silhouette;
+pub use texture::Texture;

@@ -1,0 +1,229 @@
+//! The full-resolution outline of a blended shape.
+//!
+//! The mesh encloses the drawings, so its boundary is not their edge. The edge is carried along: corresponding points
+//! of the N outlines are located in the N meshes once, and per frame each is mapped by its triangle and averaged with
+//! the blend's weights.
+//!
+//! 1. The rows: every vertex of every pose's outline, through the correspondence. So each pose's outline is returned
+//!    exactly when its weight is 1.
+//! 2. For each row and pose the triangle and barycentric coordinates.
+//! 3. Per frame: row k lies at the sum over poses of weight times its mapped point. Where a triangle moves alike in
+//!    all poses this is the blend of the outline in mesh coordinates.
+//!
+//! Cost: O(#rows x #poses) a frame, with #rows at most 20,000 a ring.
+
+use crate::matching::Correspondence;
+use crate::math::Point;
+use crate::mesh::PointLocator;
+use crate::outline::{ArcLength, Ring};
+use crate::pose::Mapping;
+
+/// Rows nearer than this to their predecessor on every pose are left out, as a fraction of the perimeter: a fifth of
+/// a pixel on an outline of 4000.
+const CLOSEST_ROWS: f64 = 5e-5;
+
+/// A point on a mesh.
+#[derive(Debug, Clone, Copy)]
+struct Anchor {
+    vertices: [usize; 3],
+    barycentric: [f64; 3],
+}
+
+/// The outlines of N poses in correspondence, fixed to the mesh.
+#[derive(Debug, Clone)]
+pub struct Silhouette {
+    /// A ring: #rows x #poses anchors.
+    rings: Vec<Vec<Anchor>>,
+    pose_count: usize,
+}
+
+impl Silhouette {
+    /// The silhouette of a mapping. Outer rings correspond by its matching, holes by the mesh's boundary.
+    #[must_use]
+    pub fn new(mapping: &Mapping) -> Self {
+        let pose_count = mapping.poses.len();
+        let triangles = mapping.poses.topology().triangles();
+        let locators: Vec<PointLocator> = mapping
+            .poses
+            .positions()
+            .iter()
+            .map(|positions| PointLocator::new(triangles, positions))
+            .collect();
+        let anchor = |pose: usize, p: Point| {
+            let located = locators[pose].nearest(p)?;
+            Some(Anchor {
+                vertices: triangles[located.triangle],
+                barycentric: located.barycentric,
+            })
+        };
+        let ring_count = mapping.outlines.iter().map(|o| o.rings().len()).min().unwrap_or(0);
+        let mut rings = Vec::new();
+        for ring in 0..ring_count {
+            let curves: Vec<&Ring> = mapping.outlines.iter().map(|o| &o.rings()[ring]).collect();
+            let by_mesh;
+            let correspondence = if ring == 0 {
+                &mapping.matching.outer
+            } else {
+                by_mesh = correspondence_by_mesh(mapping, ring, &curves);
+                &by_mesh
+            };
+            let measured: Vec<ArcLength> = curves.iter().map(|curve| ArcLength::new(curve)).collect();
+            let anchors: Option<Vec<Anchor>> = row_coordinates(correspondence, &measured)
+                .into_iter()
+                .flat_map(|row| (0..pose_count).map(move |pose| (row, pose)))
+                .map(|(row, pose)| anchor(pose, measured[pose].at(correspondence.parameter(pose, row))))
+                .collect();
+            // None: a mesh without triangles has no silhouette.
+            rings.extend(anchors);
+        }
+        Self { rings, pose_count }
+    }
+
+    /// The rings of the shape whose mesh is at `positions` and whose poses count with `weights`: outer ring first.
+    #[must_use]
+    pub fn at(&self, positions: &[Point], weights: &[f64]) -> Vec<Vec<Point>> {
+        self.rings
+            .iter()
+            .map(|anchors| {
+                anchors
+                    .chunks_exact(self.pose_count)
+                    .map(|row| {
+                        row.iter()
+                            .zip(weights)
+                            .filter(|(_, weight)| **weight != 0.0)
+                            .map(|(anchor, weight)| {
+                                let [a, b, c] = anchor.vertices.map(|v| positions[v]);
+                                let [u, v, w] = anchor.barycentric;
+                                (a * u + b * v + c * w) * *weight
+                            })
+                            .sum()
+                    })
+                    .collect()
+            })
+            .collect()
+    }
+}
+
+/// The row coordinates of every row and of every vertex of every curve, sorted, near ones left out.
+fn row_coordinates(correspondence: &Correspondence, curves: &[ArcLength]) -> Vec<f64> {
+    let mut rows: Vec<f64> = (0..correspondence.rows().len()).map(|k| k as f64).collect();
+    for (pose, curve) in curves.iter().enumerate() {
+        rows.extend(
+            curve
+                .vertex_parameters()
+                .iter()
+                .map(|t| correspondence.row_coordinate(pose, *t)),
+        );
+    }
+    rows.sort_by(f64::total_cmp);
+    let mut kept: Vec<f64> = Vec::with_capacity(rows.len());
+    for row in rows {
+        let is_apart = kept.last().is_none_or(|last| {
+            (0..curves.len()).any(|pose| {
+                let gap = correspondence.parameter(pose, row) - correspondence.parameter(pose, *last);
+                gap.rem_euclid(1.0).min((-gap).rem_euclid(1.0)) > CLOSEST_ROWS
+            })
+        });
+        if is_apart {
+            kept.push(row);
+        }
+    }
+    kept
+}
+
+/// The correspondence of hole `ring` that the vertices of the mesh's boundary state: each at the nearest point of each
+/// pose's curve, as long as the order is kept.
+fn correspondence_by_mesh(mapping: &Mapping, ring: usize, curves: &[&Ring]) -> Correspondence {
+    let measured: Vec<ArcLength> = curves.iter().map(|curve| ArcLength::new(curve)).collect();
+    let vertices = mapping.rings.get(ring).map(Vec::as_slice).unwrap_or_default();
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for &vertex in vertices {
+        let row: Vec<f64> = measured
+            .iter()
+            .zip(mapping.poses.positions())
+            .map(|(curve, positions)| curve.nearest(positions[vertex]).0)
+            .collect();
+        // After the row before, and not beyond the first: less than a turn from it, on every pose.
+        let ahead = |from: &[f64], to: &[f64]| -> Vec<f64> {
+            from.iter().zip(to).map(|(a, b)| (b - a).rem_euclid(1.0)).collect()
+        };
+        let fits = match (rows.first(), rows.last()) {
+            (Some(first), Some(last)) => {
+                let (travelled, next) = (ahead(first, last), ahead(last, &row));
+                travelled.iter().zip(&next).all(|(t, n)| *n > 0.0 && t + n < 1.0)
+            }
+            _ => true,
+        };
+        if fits {
+            rows.push(row);
+        }
+    }
+    Correspondence::new(rows).unwrap_or_else(|_| Correspondence::identity(curves.len(), 256))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Topology;
+    use crate::outline::Outline;
+    use crate::pose::{Matching, PoseSet};
+
+    fn ring(points: &[[f64; 2]]) -> Ring {
+        Ring::new(points.iter().copied().map(Point::from)).expect("a ring")
+    }
+
+    /// Two squares of side 2 as meshes; in them a diamond and a square of side 1.
+    fn mapping() -> Mapping {
+        let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]
+            .map(Point::from)
+            .to_vec();
+        let topology = Topology::new(4, vec![[0, 1, 2], [0, 2, 3]]).expect("a mesh");
+        let diamond = ring(&[[1.0, 0.5], [1.5, 1.0], [1.0, 1.5], [0.5, 1.0]]);
+        let square = ring(&[[0.5, 0.5], [1.5, 0.5], [1.5, 1.5], [0.5, 1.5]]);
+        Mapping {
+            poses: PoseSet::new(
+                topology,
+                vec![("a".to_owned(), corners.clone()), ("b".to_owned(), corners)],
+            )
+            .expect("poses"),
+            outlines: vec![
+                Outline::new(diamond, vec![]).expect("simple"),
+                Outline::new(square, vec![]).expect("simple"),
+            ],
+            rings: vec![vec![0, 1, 2, 3]],
+            steiner: 0,
+            matching: Matching {
+                reference: 0,
+                outer: Correspondence::identity(2, 8),
+            },
+        }
+    }
+
+    #[test]
+    fn a_weight_of_one_returns_that_outline() {
+        let mapping = mapping();
+        let silhouette = Silhouette::new(&mapping);
+        for (pose, weights) in [[1.0, 0.0], [0.0, 1.0]].into_iter().enumerate() {
+            let rings = silhouette.at(&mapping.poses.positions()[pose], &weights);
+            let found = Ring::new(rings[0].clone()).expect("a ring");
+            let given = mapping.outlines[pose].outer();
+            assert!((found.signed_area() - given.signed_area()).abs() < 1e-12);
+            for p in given.points() {
+                assert!(found.points().iter().any(|q| (p - q).norm() < 1e-12));
+            }
+        }
+    }
+
+    #[test]
+    fn halfway_lies_between_and_follows_the_mesh() {
+        let mapping = mapping();
+        let silhouette = Silhouette::new(&mapping);
+        let moved: Vec<Point> = mapping.poses.positions()[0]
+            .iter()
+            .map(|p| p * 3.0 + Point::new(7.0, 0.0))
+            .collect();
+        let rings = silhouette.at(&moved, &[0.5, 0.5]);
+        // Row 0: halfway from (1, 0.5) to (0.5, 0.5), times 3, shifted.
+        assert!((rings[0][0] - Point::new(0.75 * 3.0 + 7.0, 1.5)).norm() < 1e-12);
+    }
+}
