@@ -1,1 +1,76 @@
-//! Writers.
+//! Writers, one a format: PNG, PNG sequences, GIF, APNG.
+//!
+//! Every file is written under a temporary name beside its target and renamed when it is complete
+//! ([`PendingFile`]), so a run that is killed leaves no torn file, and a run that fails leaves none at all.
+
+mod apng;
+mod gif;
+mod palette;
+mod pending;
+mod png;
+mod sequence;
+
+pub use apng::ApngWriter;
+pub use gif::{Backdrop, GifWriter};
+pub use palette::Palette;
+pub use pending::PendingFile;
+pub use png::png_bytes;
+pub use sequence::Sequence;
+
+use std::path::{Path, PathBuf};
+
+/// Why a file could not be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// The system refuses.
+    #[error("cannot write {}: {reason}; choose a place that exists and that you may write to", path.display())]
+    CannotWrite {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's reason.
+        reason: String,
+    },
+    /// The format cannot hold it.
+    #[error("{}: {reason}", path.display())]
+    Unsuitable {
+        /// The file.
+        path: PathBuf,
+        /// What the format cannot hold, and what to do.
+        reason: String,
+    },
+}
+
+impl ExportError {
+    fn cannot_write(path: &Path, reason: impl std::fmt::Display) -> Self {
+        Self::CannotWrite {
+            path: path.to_owned(),
+            reason: reason.to_string(),
+        }
+    }
+}
+
+/// Whether an animation plays once or again and again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Repetition {
+    /// Once.
+    Once,
+    /// For ever.
+    Forever,
+}
+
+/// The box of pixels for which `keep` holds, as left, top, width and height; `None` if it holds for none.
+fn box_of(width: usize, height: usize, keep: impl Fn(usize) -> bool) -> Option<[usize; 4]> {
+    let (mut left, mut top, mut right, mut bottom) = (width, height, 0, 0);
+    for y in 0..height {
+        for x in 0..width {
+            if keep(y * width + x) {
+                left = left.min(x);
+                right = right.max(x + 1);
+                top = top.min(y);
+                bottom = y + 1;
+            }
+        }
+    }
+    (left < right).then(|| [left, top, right - left, bottom - top])
+}

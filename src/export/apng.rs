@@ -1,0 +1,191 @@
+//! Animated PNG: full colour and alpha.
+//!
+//! Every frame but the first is cut to what is drawn and cleared before the next.
+
+use std::path::PathBuf;
+
+use super::{ExportError, PendingFile, Repetition, box_of};
+use crate::render::Frame;
+
+/// Writes an APNG frame by frame. All frames have one size.
+pub struct ApngWriter {
+    writer: png::Writer<PendingFileRef>,
+    file: std::rc::Rc<std::cell::RefCell<PendingFile>>,
+    target: PathBuf,
+    size: [usize; 2],
+    is_first: bool,
+}
+
+impl std::fmt::Debug for ApngWriter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ApngWriter")
+            .field("target", &self.target)
+            .finish_non_exhaustive()
+    }
+}
+
+/// The encoder keeps its writer to itself; the file is shared with it so that it can be renamed at the end.
+struct PendingFileRef(std::rc::Rc<std::cell::RefCell<PendingFile>>);
+
+impl std::io::Write for PendingFileRef {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.borrow_mut().write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.0.borrow_mut().flush()
+    }
+}
+
+impl ApngWriter {
+    /// An APNG of `count` frames of `size` (columns, rows) at `fps` frames a second.
+    ///
+    /// # Errors
+    /// [`ExportError`] if the file cannot be written.
+    pub fn new(
+        file: PendingFile,
+        size: [usize; 2],
+        fps: f64,
+        count: usize,
+        repetition: Repetition,
+    ) -> Result<Self, ExportError> {
+        let target = file.target().to_owned();
+        let failed = |error: png::EncodingError| ExportError::cannot_write(&target, error);
+        let file = std::rc::Rc::new(std::cell::RefCell::new(file));
+        let mut encoder = png::Encoder::new(PendingFileRef(file.clone()), size[0] as u32, size[1] as u32);
+        encoder.set_color(png::ColorType::Rgba);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::Balanced);
+        let plays = match repetition {
+            Repetition::Once => 1,
+            Repetition::Forever => 0,
+        };
+        encoder.set_animated(count as u32, plays).map_err(failed)?;
+        let (numerator, denominator) = delay(fps);
+        encoder.set_frame_delay(numerator, denominator).map_err(failed)?;
+        encoder.set_dispose_op(png::DisposeOp::Background).map_err(failed)?;
+        encoder.set_blend_op(png::BlendOp::Source).map_err(failed)?;
+        let writer = encoder.write_header().map_err(failed)?;
+        Ok(Self {
+            writer,
+            file,
+            target,
+            size,
+            is_first: true,
+        })
+    }
+
+    /// Adds a frame.
+    ///
+    /// # Errors
+    /// [`ExportError`] if the file cannot be written, the frame has another size, or there are too many.
+    pub fn add(&mut self, frame: &Frame) -> Result<(), ExportError> {
+        if [frame.width, frame.height] != self.size {
+            return Err(ExportError::Unsuitable {
+                path: self.target.clone(),
+                reason: "all frames of an APNG have one size".to_owned(),
+            });
+        }
+        let straight = frame.straight();
+        let drawn = if self.is_first {
+            // The format wants the first frame whole.
+            [0, 0, frame.width, frame.height]
+        } else {
+            box_of(frame.width, frame.height, |i| frame.pixels[i][3] > 0).unwrap_or([0, 0, 1, 1])
+        };
+        self.is_first = false;
+        let [left, top, columns, rows] = drawn;
+        let buffer: Vec<u8> = (top..top + rows)
+            .flat_map(|y| straight[(y * frame.width + left) * 4..][..columns * 4].iter().copied())
+            .collect();
+        let writer = &mut self.writer;
+        let write = |writer: &mut png::Writer<PendingFileRef>| {
+            writer.reset_frame_position()?;
+            writer.set_frame_dimension(columns as u32, rows as u32)?;
+            writer.set_frame_position(left as u32, top as u32)?;
+            writer.write_image_data(&buffer)
+        };
+        write(writer).map_err(|error| ExportError::cannot_write(&self.target, error))
+    }
+
+    /// Ends the file and gives it its name.
+    ///
+    /// # Errors
+    /// [`ExportError`] if the system refuses or frames are missing.
+    pub fn finish(self) -> Result<(), ExportError> {
+        self.writer
+            .finish()
+            .map_err(|error| ExportError::cannot_write(&self.target, error))?;
+        match std::rc::Rc::try_unwrap(self.file) {
+            Ok(file) => file.into_inner().commit(),
+            Err(_) => Err(ExportError::cannot_write(
+                &self.target,
+                "the encoder still holds the file",
+            )),
+        }
+    }
+}
+
+/// The time a frame is shown, as a fraction of seconds in 16 bits.
+fn delay(fps: f64) -> (u16, u16) {
+    for numerator in [1.0, 1001.0, 1000.0, 100.0, 10.0] {
+        let denominator = numerator * fps;
+        if denominator.round() <= f64::from(u16::MAX) && (denominator - denominator.round()).abs() < 1e-6 * denominator
+        {
+            return (numerator as u16, denominator.round() as u16);
+        }
+    }
+    if fps >= 1.0 {
+        (10, (10.0 * fps).round() as u16)
+    } else {
+        ((1000.0 / fps).round().min(f64::from(u16::MAX)) as u16, 1000)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::AnimationDecoder as _;
+
+    #[test]
+    fn frames_read_back_exactly() {
+        let frames: Vec<Frame> = (0..4)
+            .map(|k| {
+                let mut frame = Frame::filled(8, 6, [0; 4]);
+                for y in 1..4 {
+                    frame.pixels[y * 8 + k + 1] = [100, 20 * k as u8, 0, 128];
+                }
+                frame
+            })
+            .chain([Frame::filled(8, 6, [0; 4])])
+            .collect();
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.png");
+        let file = PendingFile::create(&path).expect("writable");
+        let mut writer = ApngWriter::new(file, [8, 6], 24.0, frames.len(), Repetition::Once).expect("an APNG");
+        for frame in &frames {
+            writer.add(frame).expect("added");
+        }
+        writer.finish().expect("written");
+        let bytes = std::fs::read(path).expect("there");
+        let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(bytes)).expect("a PNG");
+        let read = decoder
+            .apng()
+            .expect("an APNG")
+            .into_frames()
+            .collect_frames()
+            .expect("frames");
+        assert_eq!(read.len(), frames.len());
+        for (frame, read) in frames.iter().zip(read) {
+            assert_eq!(read.buffer().as_raw(), &frame.straight());
+            assert_eq!(read.delay().numer_denom_ms(), (125, 3));
+        }
+    }
+
+    #[test]
+    fn delays_are_exact_where_they_can_be() {
+        assert_eq!(delay(24.0), (1, 24));
+        assert_eq!(delay(24000.0 / 1001.0), (1001, 24000));
+        assert_eq!(delay(0.5), (1000, 500));
+    }
+}

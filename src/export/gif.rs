@@ -1,0 +1,233 @@
+//! Animated GIF.
+//!
+//! In front of nothing each frame is cut to what is drawn and cleared before the next, so that no frame shows through;
+//! in front of a colour only what changed is drawn over the last frame. Times are whole hundredths of a second, spread
+//! so that no frame is late by more than half of one.
+
+use std::path::Path;
+
+use super::{ExportError, Palette, PendingFile, Repetition, box_of};
+use crate::render::Frame;
+
+/// The shortest time a frame is shown, in hundredths of a second: players slow shorter ones down to ten.
+const SHORTEST: u64 = 2;
+
+/// What is behind the frames.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Backdrop {
+    /// Nothing, at least in places.
+    Clear,
+    /// Every pixel of every frame is opaque.
+    Opaque,
+}
+
+/// Writes a GIF frame by frame. All frames have one size and share one palette.
+pub struct GifWriter {
+    encoder: gif::Encoder<PendingFile>,
+    target: std::path::PathBuf,
+    palette: Palette,
+    backdrop: Backdrop,
+    size: [u16; 2],
+    fps: f64,
+    /// How many frames were added.
+    count: u64,
+    /// The last frame, in front of a colour.
+    last: Option<Vec<u8>>,
+}
+
+impl std::fmt::Debug for GifWriter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("GifWriter")
+            .field("target", &self.target)
+            .field("count", &self.count)
+            .finish_non_exhaustive()
+    }
+}
+
+impl GifWriter {
+    /// A GIF of `size` (columns, rows) at `fps` frames a second.
+    ///
+    /// # Errors
+    /// [`ExportError`] if the file cannot be written or the format cannot hold the size.
+    pub fn new(
+        file: PendingFile,
+        size: [usize; 2],
+        fps: f64,
+        palette: Palette,
+        backdrop: Backdrop,
+        repetition: Repetition,
+    ) -> Result<Self, ExportError> {
+        let target = file.target().to_owned();
+        let [Ok(width), Ok(height)] = size.map(u16::try_from) else {
+            return Err(ExportError::Unsuitable {
+                path: target,
+                reason: "a GIF is at most 65535 pixels wide and high; choose a smaller size".to_owned(),
+            });
+        };
+        let mut encoder = gif::Encoder::new(file, width, height, &palette.bytes())
+            .map_err(|error| ExportError::cannot_write(&target, error))?;
+        if repetition == Repetition::Forever {
+            encoder
+                .set_repeat(gif::Repeat::Infinite)
+                .map_err(|error| ExportError::cannot_write(&target, error))?;
+        }
+        Ok(Self {
+            encoder,
+            target,
+            palette,
+            backdrop,
+            size: [width, height],
+            fps,
+            count: 0,
+            last: None,
+        })
+    }
+
+    /// Adds a frame.
+    ///
+    /// # Errors
+    /// [`ExportError`] if the file cannot be written or the frame has another size.
+    pub fn add(&mut self, frame: &Frame) -> Result<(), ExportError> {
+        let [width, height] = self.size.map(usize::from);
+        if [frame.width, frame.height] != [width, height] {
+            return Err(ExportError::Unsuitable {
+                path: self.target.clone(),
+                reason: "all frames of a GIF have one size".to_owned(),
+            });
+        }
+        let mut indices = self.palette.indices(frame);
+        let drawn = match &self.last {
+            Some(last) => box_of(width, height, |i| indices[i] != last[i]),
+            None => box_of(width, height, |i| indices[i] != Palette::TRANSPARENT),
+        };
+        // A frame needs at least one pixel.
+        let [left, top, columns, rows] = drawn.unwrap_or([0, 0, 1, 1]);
+        let whole = indices.clone();
+        if let Some(last) = &self.last {
+            for (index, before) in indices.iter_mut().zip(last) {
+                if index == before {
+                    *index = Palette::TRANSPARENT;
+                }
+            }
+        }
+        if self.backdrop == Backdrop::Opaque {
+            self.last = Some(whole);
+        }
+        let buffer: Vec<u8> = (top..top + rows)
+            .flat_map(|y| indices[y * width + left..][..columns].iter().copied())
+            .collect();
+        let delay = hundredths(self.count, self.fps);
+        let frame = gif::Frame {
+            delay,
+            dispose: match self.backdrop {
+                Backdrop::Clear => gif::DisposalMethod::Background,
+                Backdrop::Opaque => gif::DisposalMethod::Keep,
+            },
+            transparent: Some(Palette::TRANSPARENT),
+            left: left as u16,
+            top: top as u16,
+            width: columns as u16,
+            height: rows as u16,
+            buffer: buffer.into(),
+            ..gif::Frame::default()
+        };
+        self.count += 1;
+        self.encoder
+            .write_frame(&frame)
+            .map_err(|error| ExportError::cannot_write(&self.target, error))
+    }
+
+    /// Ends the file and gives it its name.
+    ///
+    /// # Errors
+    /// [`ExportError`] if the system refuses.
+    pub fn finish(self) -> Result<(), ExportError> {
+        let file = self
+            .encoder
+            .into_inner()
+            .map_err(|error| ExportError::cannot_write(&self.target, error))?;
+        file.commit()
+    }
+
+    /// Opens the file at `target`; a shorthand of [`PendingFile::create`].
+    ///
+    /// # Errors
+    /// [`ExportError`] if it cannot be written.
+    pub fn open(target: &Path) -> Result<PendingFile, ExportError> {
+        PendingFile::create(target)
+    }
+}
+
+/// How long frame `index` is shown, so that frame n starts within half a hundredth of n / fps.
+fn hundredths(index: u64, fps: f64) -> u16 {
+    let start = |k: u64| (k as f64 * 100.0 / fps).round() as u64;
+    (start(index + 1) - start(index)).clamp(SHORTEST, u64::from(u16::MAX)) as u16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::AnimationDecoder as _;
+
+    fn frames() -> Vec<Frame> {
+        (0..5)
+            .map(|k| {
+                let mut frame = Frame::filled(8, 6, [0; 4]);
+                for y in 1..4 {
+                    frame.pixels[y * 8 + k] = [200, 20 * k as u8, 0, 255];
+                }
+                frame
+            })
+            .collect()
+    }
+
+    fn written(frames: &[Frame], backdrop: Backdrop) -> Vec<image::Frame> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.gif");
+        let file = GifWriter::open(&path).expect("writable");
+        let palette = Palette::for_frames(frames);
+        let mut writer = GifWriter::new(file, [8, 6], 24.0, palette, backdrop, Repetition::Forever).expect("a GIF");
+        for frame in frames {
+            writer.add(frame).expect("added");
+        }
+        writer.finish().expect("written");
+        let bytes = std::fs::read(path).expect("there");
+        let decoder = image::codecs::gif::GifDecoder::new(std::io::Cursor::new(bytes)).expect("a GIF");
+        decoder.into_frames().collect_frames().expect("frames")
+    }
+
+    #[test]
+    fn clear_frames_leave_nothing_behind() {
+        let frames = frames();
+        for (frame, read) in frames.iter().zip(written(&frames, Backdrop::Clear)) {
+            for (pixel, expected) in read.buffer().pixels().zip(&frame.pixels) {
+                assert_eq!(pixel.0[3], expected[3]);
+                if expected[3] > 0 {
+                    assert_eq!(&pixel.0, expected);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn opaque_frames_are_drawn_over_one_another() {
+        let mut frames = frames();
+        for frame in &mut frames {
+            frame.put_before([255, 255, 255, 255]);
+        }
+        frames.push(frames[4].clone());
+        let read = written(&frames, Backdrop::Opaque);
+        assert_eq!(read.len(), 6);
+        for (frame, read) in frames.iter().zip(read) {
+            let pixels: Vec<[u8; 4]> = read.buffer().pixels().map(|p| p.0).collect();
+            assert_eq!(pixels, frame.pixels);
+        }
+    }
+
+    #[test]
+    fn times_add_up() {
+        let total: u64 = (0..24).map(|k| u64::from(hundredths(k, 24.0))).sum();
+        assert_eq!(total, 100);
+        assert_eq!(hundredths(0, 1000.0), 2);
+    }
+}
