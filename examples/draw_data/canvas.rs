@@ -1,0 +1,155 @@
+//! A bitmap to draw on: flat colours over an ink line, drawn large and averaged down.
+//!
+//! The ink line of a group of parts is every part drawn a little fatter in ink first and in its colour afterwards, so
+//! that parts which belong together get one line around them all. Averaging down keeps each pixel's alpha very close
+//! to the area that the drawing covers in it.
+
+use std::error::Error;
+use std::path::Path;
+
+use kurbo::{Affine, BezPath, PathEl};
+use tiny_skia::{
+    BlendMode, Color, FillRule, LineJoin, Mask, Paint, PathBuilder, Pixmap, PremultipliedColorU8, Stroke, Transform,
+};
+
+/// Large pixels to one pixel of the finished picture, in each direction.
+const OVERSAMPLING: u32 = 4;
+
+/// What a shadow leaves of the colour under it.
+const SHADOW: Rgb = [0xe4, 0xc0, 0xb6];
+
+/// An sRGB colour.
+pub(crate) type Rgb = [u8; 3];
+
+/// The picture being drawn.
+#[derive(Debug)]
+pub(crate) struct Canvas {
+    large: Pixmap,
+    width_px: u32,
+    height_px: u32,
+}
+
+impl Canvas {
+    /// An empty picture.
+    pub(crate) fn new(width_px: u32, height_px: u32) -> Result<Self, Box<dyn Error>> {
+        let large = Pixmap::new(width_px * OVERSAMPLING, height_px * OVERSAMPLING).ok_or("the picture is empty")?;
+        Ok(Self {
+            large,
+            width_px,
+            height_px,
+        })
+    }
+
+    /// Fills a path.
+    pub(crate) fn fill(&mut self, path: &BezPath, colour: Rgb) {
+        if let Some(path) = skia(path) {
+            self.large
+                .fill_path(&path, &paint(colour), FillRule::Winding, enlarge(), None);
+        }
+    }
+
+    /// Fills the part of a path that lies inside `window`.
+    pub(crate) fn fill_inside(&mut self, path: &BezPath, window: &BezPath, colour: Rgb) {
+        self.paint_inside(path, window, &paint(colour));
+    }
+
+    /// Darkens the part of a path that lies inside `window`, whatever colours are there.
+    pub(crate) fn shade(&mut self, path: &BezPath, window: &BezPath) {
+        let mut shadow = paint(SHADOW);
+        shadow.blend_mode = BlendMode::Multiply;
+        self.paint_inside(path, window, &shadow);
+    }
+
+    fn paint_inside(&mut self, path: &BezPath, window: &BezPath, paint: &Paint<'_>) {
+        let (Some(path), Some(window)) = (skia(path), skia(window)) else {
+            return;
+        };
+        let Some(mut mask) = Mask::new(self.large.width(), self.large.height()) else {
+            return;
+        };
+        mask.fill_path(&window, FillRule::Winding, true, enlarge());
+        self.large
+            .fill_path(&path, paint, FillRule::Winding, enlarge(), Some(&mask));
+    }
+
+    /// Fills a path and `margin` around it: the ink under a part.
+    pub(crate) fn ink(&mut self, path: &BezPath, margin: f64, colour: Rgb) {
+        self.fill(path, colour);
+        self.line(path, 2.0 * margin, colour);
+    }
+
+    /// Draws along a path with a round pen.
+    pub(crate) fn line(&mut self, path: &BezPath, width: f64, colour: Rgb) {
+        let stroke = Stroke {
+            width: width as f32,
+            line_join: LineJoin::Round,
+            line_cap: tiny_skia::LineCap::Round,
+            ..Stroke::default()
+        };
+        if let Some(path) = skia(path) {
+            self.large.stroke_path(&path, &paint(colour), &stroke, enlarge(), None);
+        }
+    }
+
+    /// Averages down and writes a PNG file.
+    pub(crate) fn save(&self, file: &Path) -> Result<(), Box<dyn Error>> {
+        let mut picture = Pixmap::new(self.width_px, self.height_px).ok_or("the picture is empty")?;
+        let (large, large_width) = (self.large.pixels(), self.large.width());
+        let samples = OVERSAMPLING * OVERSAMPLING;
+        for y in 0..self.height_px {
+            for x in 0..self.width_px {
+                let mut sums = [0_u32; 4];
+                for sample in 0..samples {
+                    let (u, v) = (
+                        x * OVERSAMPLING + sample % OVERSAMPLING,
+                        y * OVERSAMPLING + sample / OVERSAMPLING,
+                    );
+                    let pixel = large[(v * large_width + u) as usize];
+                    for (sum, part) in sums
+                        .iter_mut()
+                        .zip([pixel.red(), pixel.green(), pixel.blue(), pixel.alpha()])
+                    {
+                        *sum += u32::from(part);
+                    }
+                }
+                let [red, green, blue, alpha] = sums.map(|sum| ((sum + samples / 2) / samples) as u8);
+                picture.pixels_mut()[(y * self.width_px + x) as usize] =
+                    PremultipliedColorU8::from_rgba(red.min(alpha), green.min(alpha), blue.min(alpha), alpha)
+                        .ok_or("a colour brighter than its alpha")?;
+            }
+        }
+        picture.save_png(file)?;
+        Ok(())
+    }
+}
+
+/// The same path at another place.
+pub(crate) fn moved(frame: Affine, path: &BezPath) -> BezPath {
+    frame * path.clone()
+}
+
+fn enlarge() -> Transform {
+    Transform::from_scale(OVERSAMPLING as f32, OVERSAMPLING as f32)
+}
+
+fn paint([red, green, blue]: Rgb) -> Paint<'static> {
+    let mut paint = Paint::default();
+    paint.set_color(Color::from_rgba8(red, green, blue, 255));
+    paint.anti_alias = true;
+    paint
+}
+
+fn skia(path: &BezPath) -> Option<tiny_skia::Path> {
+    let mut builder = PathBuilder::new();
+    let f = |point: kurbo::Point| (point.x as f32, point.y as f32);
+    for element in path.elements() {
+        match *element {
+            PathEl::MoveTo(p) => builder.move_to(f(p).0, f(p).1),
+            PathEl::LineTo(p) => builder.line_to(f(p).0, f(p).1),
+            PathEl::QuadTo(a, p) => builder.quad_to(f(a).0, f(a).1, f(p).0, f(p).1),
+            PathEl::CurveTo(a, b, p) => builder.cubic_to(f(a).0, f(a).1, f(b).0, f(b).1, f(p).0, f(p).1),
+            PathEl::ClosePath => builder.close(),
+        }
+    }
+    builder.finish()
+}

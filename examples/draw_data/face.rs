@@ -1,0 +1,546 @@
+//! The face: four vector drawings of one head, calm or laughing, turned to the left or to the right.
+//!
+//! The features lie on a ball and are projected from it, so that turning foreshortens them as it should. Every drawing
+//! is made by the same program from three numbers (turn, and how far eyes and mouth laugh): the elements, their names
+//! and the number of their curves are equal in all four.
+
+use std::error::Error;
+use std::path::Path;
+
+use kurbo::{BezPath, Point, Vec2};
+
+use crate::curves::{at, brush, grown, smooth_closed, smooth_through};
+use crate::scene::{self, Pose, Scene};
+use crate::svg::Drawing;
+
+const SIZE: f64 = 560.0;
+/// Thickness of the ink line around the head.
+const LINE: f64 = 6.5;
+/// Thickness of ink lines inside it.
+const FINE: f64 = 5.0;
+
+const INK: &str = "#33202e";
+const SKIN: &str = "#ffd0a6";
+const SKIN_SHADE: &str = "#f2b089";
+const CHEEK: &str = "#f89a83";
+const EAR_INSIDE: &str = "#e58d72";
+const NOSE: &str = "#d9775c";
+const HAIR: &str = "#d9542b";
+const HAIR_LIGHT: &str = "#f07a3f";
+const WHITE: &str = "#fffdf6";
+const IRIS: &str = "#3f8f6b";
+const MOUTH: &str = "#7d2136";
+const TEETH: &str = "#fffdf6";
+const TONGUE: &str = "#f0717a";
+
+const ANIMATION: &str = "\
+[animation]
+fps = 24
+loop = true
+size = [480, 480]
+background = \"white\"
+# Round the square: turn, laugh, turn back laughing, calm down.
+keys = [
+  { time = 0.0, at = [0.0, 0.0] },
+  { time = 0.9, at = [1.0, 0.0] },
+  { time = 1.8, at = [1.0, 1.0] },
+  { time = 2.7, at = [0.0, 1.0] },
+  { time = 3.6, at = [0.0, 0.0] },
+]
+";
+
+/// One drawing of the head.
+#[derive(Debug, Clone, Copy)]
+struct Look {
+    name: &'static str,
+    /// Turn of the head to the picture's right, degrees.
+    turn_deg: f64,
+    /// 0 calm, 1 laughing.
+    laugh: f64,
+    /// Place in pose space.
+    at: [f64; 2],
+}
+
+const LOOKS: [Look; 4] = [
+    Look {
+        name: "calm_left",
+        turn_deg: -TURN_DEG,
+        laugh: 0.0,
+        at: [0.0, 0.0],
+    },
+    Look {
+        name: "calm_right",
+        turn_deg: TURN_DEG,
+        laugh: 0.0,
+        at: [1.0, 0.0],
+    },
+    Look {
+        name: "laugh_left",
+        turn_deg: -TURN_DEG,
+        laugh: 1.0,
+        at: [0.0, 1.0],
+    },
+    Look {
+        name: "laugh_right",
+        turn_deg: TURN_DEG,
+        laugh: 1.0,
+        at: [1.0, 1.0],
+    },
+];
+
+/// Draws the four heads into `folder`.
+pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
+    std::fs::create_dir_all(folder)?;
+    let mut poses = Vec::new();
+    for look in LOOKS {
+        let mut drawing = Drawing::new(SIZE, SIZE, &format!("face, {}", look.name));
+        let head = Head::new(look);
+        draw_head(&mut drawing, &head);
+        drawing.save(&folder.join(format!("{}.svg", look.name)))?;
+        let line = grown(&outline(&head), LINE);
+        poses.push(Pose {
+            name: look.name,
+            file: format!("{}.svg", look.name),
+            at: look.at,
+            landmarks: vec![("chin", line[CHIN]), ("tuft", line[TUFT])],
+        });
+    }
+    scene::save(
+        folder,
+        &Scene {
+            element: Some("head"),
+            poses,
+            animation: ANIMATION,
+        },
+    )
+}
+
+/// The ball that the features lie on.
+struct Head {
+    turn_rad: f64,
+    laugh: f64,
+    middle: Point,
+}
+
+/// How far the head turns to either side.
+const TURN_DEG: f64 = 23.0;
+/// The ball's rim, degrees from the middle of the picture: nothing on the face goes round it.
+const RIM_DEG: f64 = 71.0;
+const BALL_WIDTH: f64 = 166.0;
+const BALL_HEIGHT: f64 = 168.0;
+
+impl Head {
+    fn new(look: Look) -> Self {
+        // A laughing head is thrown up a little.
+        let middle = at(0.5 * SIZE, 302.0 - 8.0 * look.laugh);
+        Self {
+            turn_rad: look.turn_deg.to_radians(),
+            laugh: look.laugh,
+            middle,
+        }
+    }
+
+    /// Between the calm and the laughing value.
+    fn mix(&self, calm: f64, laughing: f64) -> f64 {
+        calm + (laughing - calm) * self.laugh
+    }
+
+    /// -1 turned left, 1 turned right.
+    fn turn(&self) -> f64 {
+        self.turn_rad.sin() / TURN_DEG.to_radians().sin()
+    }
+
+    /// The point of the face at `across` (degrees from its middle) and `down` (pixels from the ball's equator).
+    fn on_face(&self, across_deg: f64, down: f64) -> Point {
+        let latitude_rad = (down / BALL_HEIGHT).clamp(-0.98, 0.98).asin();
+        let rim_rad = RIM_DEG.to_radians();
+        let longitude_rad = (across_deg.to_radians() + self.turn_rad).clamp(-rim_rad, rim_rad);
+        let x = BALL_WIDTH * longitude_rad.sin() * latitude_rad.cos().powf(0.6);
+        self.middle + Vec2::new(x, down)
+    }
+
+    /// A closed curve of the face.
+    fn ring(&self, points: &[(f64, f64)]) -> Vec<Point> {
+        points
+            .iter()
+            .map(|&(across_deg, down)| self.on_face(across_deg, down))
+            .collect()
+    }
+
+    /// An ellipse of the face: its middle, and its radii in degrees across and pixels down.
+    fn spot(&self, middle: (f64, f64), radii: (f64, f64)) -> BezPath {
+        let points: Vec<(f64, f64)> = (0..8)
+            .map(|k| {
+                let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
+                (middle.0 + radii.0 * cos, middle.1 + radii.1 * sin)
+            })
+            .collect();
+        smooth_closed(&self.ring(&points))
+    }
+
+    /// A stroke on the face.
+    fn stroke(&self, points: &[(f64, f64)], middle_width: f64, end_width: f64) -> BezPath {
+        brush(&self.ring(points), middle_width, end_width)
+    }
+}
+
+fn draw_head(drawing: &mut Drawing, head: &Head) {
+    let outline = outline(head);
+    drawing.fill("head", INK, smooth_closed(&grown(&outline, LINE)));
+    drawing.fill("skin", SKIN, smooth_closed(&outline));
+    drawing.fill("jaw-shade", SKIN_SHADE, jaw_shade(head, &outline));
+    draw_ears(drawing, head);
+    draw_cheeks(drawing, head);
+    draw_eyes(drawing, head);
+    draw_nose(drawing, head);
+    draw_mouth(drawing, head);
+    draw_hair(drawing, head, &outline);
+    draw_brows(drawing, head);
+}
+
+/// The skin's and hair's outline, clockwise from the chin; the ink line lies outside it.
+fn outline(head: &Head) -> Vec<Point> {
+    let (turn, middle) = (head.turn(), head.middle);
+    let jaw = head.mix(0.0, 16.0);
+    let puff = head.mix(0.0, 5.0);
+    // The chin follows the turn most, the skull the least; the ear that comes forward is the larger one.
+    let lower = 26.0 * turn;
+    let cheek = 10.0 * turn;
+    let (left_ear, right_ear) = (1.0 + 0.22 * turn, 1.0 - 0.22 * turn);
+    let ears = -16.0 * turn;
+    let sway = -9.0 * turn;
+    let points = [
+        // Chin, left jaw, left cheek.
+        (lower, 172.0 + jaw),
+        (-52.0 + lower, 162.0 + 0.9 * jaw),
+        (-118.0 + 0.7 * lower, 116.0 + 0.5 * jaw),
+        (-146.0 - puff + cheek, 62.0),
+        // Left ear.
+        (-158.0 - 2.0 * left_ear + ears * 0.4, 50.0),
+        (-176.0 - 8.0 * left_ear + ears * 0.4, 46.0),
+        (-181.0 - 16.0 * left_ear + ears * 0.4, 12.0),
+        (-176.0 - 8.0 * left_ear + ears * 0.4, -18.0),
+        (-162.0 + ears * 0.3, -24.0),
+        // Hair: left side, fringe bumps up to the tuft.
+        (-170.0 + 0.5 * sway, -60.0),
+        (-150.0 + sway, -118.0),
+        (-100.0 + sway, -168.0),
+        (-44.0 + sway, -190.0),
+        // The tuft: two curls.
+        (-22.0 + 1.4 * sway, -203.0),
+        (-18.0 + 2.0 * sway, -232.0),
+        (-2.0 + 2.6 * sway, -254.0),
+        (16.0 + 2.6 * sway, -246.0),
+        (18.0 + 2.2 * sway, -228.0),
+        (30.0 + 2.2 * sway, -234.0),
+        (50.0 + 2.4 * sway, -232.0),
+        (56.0 + 2.0 * sway, -212.0),
+        (50.0 + 1.4 * sway, -194.0),
+        // Hair: right side.
+        (104.0 + sway, -168.0),
+        (152.0 + sway, -118.0),
+        (170.0 + 0.5 * sway, -60.0),
+        // Right ear.
+        (162.0 + ears * 0.3, -24.0),
+        (176.0 + 8.0 * right_ear + ears * 0.4, -18.0),
+        (181.0 + 16.0 * right_ear + ears * 0.4, 12.0),
+        (176.0 + 8.0 * right_ear + ears * 0.4, 46.0),
+        (158.0 + 2.0 * right_ear + ears * 0.4, 50.0),
+        // Right cheek, right jaw.
+        (146.0 + puff + cheek, 62.0),
+        (118.0 + 0.7 * lower, 116.0 + 0.5 * jaw),
+        (52.0 + lower, 162.0 + 0.9 * jaw),
+    ];
+    points.map(|(x, y)| middle + Vec2::new(x, y)).to_vec()
+}
+
+/// Where in the outline the chin and the tuft's top are.
+const CHIN: usize = 0;
+const TUFT: usize = 15;
+/// Where in the outline the hair begins (behind the left ear) and ends (behind the right one).
+const HAIR_POINTS: std::ops::RangeInclusive<usize> = 8..=25;
+
+/// A shadow along the right cheek, the jaw and under the chin; its outer edge is the outline itself.
+fn jaw_shade(head: &Head, outline: &[Point]) -> BezPath {
+    let last = outline.len() - 1;
+    let edge = [
+        outline[last - 2],
+        outline[last - 1],
+        outline[last],
+        outline[0],
+        outline[1],
+    ];
+    let mut path = BezPath::new();
+    smooth_through(&mut path, &edge);
+    let inwards = [0.0, 0.13, 0.16, 0.09, 0.0];
+    let inner: Vec<Point> = edge
+        .iter()
+        .zip(inwards)
+        .rev()
+        .map(|(point, share)| point.lerp(head.middle, share))
+        .collect();
+    smooth_through(&mut path, &inner);
+    path.close_path();
+    path
+}
+
+fn draw_ears(drawing: &mut Drawing, head: &Head) {
+    let ears = -16.0 * head.turn();
+    for (id, sign) in [("ear-left", -1.0), ("ear-right", 1.0)] {
+        let size = 1.0 - 0.22 * sign * head.turn();
+        let place = |x: f64, y: f64| head.middle + Vec2::new(sign * (170.0 + x * size) + ears * 0.4, y);
+        let inside = [
+            place(-4.0, 34.0),
+            place(10.0, 28.0),
+            place(14.0, 12.0),
+            place(9.0, -4.0),
+            place(-2.0, -6.0),
+        ];
+        let mut ring = inside.to_vec();
+        ring.extend([place(3.0, 4.0), place(5.0, 14.0), place(2.0, 24.0)]);
+        drawing.fill(id, EAR_INSIDE, smooth_closed(&ring));
+    }
+}
+
+fn draw_cheeks(drawing: &mut Drawing, head: &Head) {
+    let down = head.mix(70.0, 58.0);
+    for (id, sign) in [("cheek-left", -1.0), ("cheek-right", 1.0)] {
+        drawing.fill(
+            id,
+            CHEEK,
+            head.spot((36.0 * sign, down), (head.mix(10.0, 12.0), head.mix(15.0, 18.0))),
+        );
+    }
+}
+
+/// An open eye and the arch of a laughing one, point by point.
+const OPEN_EYE: [(f64, f64); 8] = [
+    (1.0, 0.0),
+    (0.72, 0.72),
+    (0.0, 1.0),
+    (-0.72, 0.72),
+    (-1.0, 0.0),
+    (-0.72, -0.72),
+    (0.0, -1.0),
+    (0.72, -0.72),
+];
+const CLOSED_EYE: [(f64, f64); 8] = [
+    (1.0, 0.42),
+    (0.72, -0.02),
+    (0.0, -0.3),
+    (-0.72, -0.02),
+    (-1.0, 0.42),
+    (-0.78, -0.32),
+    (0.0, -0.72),
+    (0.78, -0.32),
+];
+
+fn draw_eyes(drawing: &mut Drawing, head: &Head) {
+    // A calm eye is an upright oval; laughing squeezes it into an arch.
+    for (side, sign) in [("left", -1.0), ("right", 1.0)] {
+        let ring: Vec<(f64, f64)> = OPEN_EYE
+            .iter()
+            .zip(CLOSED_EYE)
+            .map(|(&(x, y), (u, v))| {
+                (
+                    24.0 * sign + head.mix(9.5 * x, 11.5 * u),
+                    head.mix(4.0 + 27.0 * y, 6.0 + 30.0 * v),
+                )
+            })
+            .collect();
+        let line = head.ring(&ring);
+        drawing.fill(
+            format!("eye-line-{side}"),
+            INK,
+            smooth_closed(&grown(&line, head.mix(FINE, FINE * 0.5))),
+        );
+        let open = head.mix(1.0, 0.0);
+        let white: Vec<Point> = {
+            let middle = head.on_face(24.0 * sign, head.mix(4.0, -8.0));
+            line.iter()
+                .map(|point| middle + (*point - middle) * head.mix(1.0, 0.10))
+                .collect()
+        };
+        drawing.fill(
+            format!("eye-{side}"),
+            if open > 0.5 { WHITE } else { INK },
+            smooth_closed(&white),
+        );
+        let look = 2.4 * head.turn();
+        let scale = head.mix(1.0, 0.08);
+        let (x, y) = (24.0 * sign + look, head.mix(7.0, -8.0));
+        drawing.fill(
+            format!("iris-{side}"),
+            if open > 0.5 { IRIS } else { INK },
+            head.spot((x, y), (6.4 * scale, 19.0 * scale)),
+        );
+        drawing.fill(
+            format!("pupil-{side}"),
+            INK,
+            head.spot((x, y), (3.8 * scale, 11.5 * scale)),
+        );
+        drawing.fill(
+            format!("glint-{side}"),
+            if open > 0.5 { WHITE } else { INK },
+            head.spot((x + 2.0 * scale, y - 8.0 * scale), (2.0 * scale, 5.5 * scale)),
+        );
+    }
+}
+
+fn draw_brows(drawing: &mut Drawing, head: &Head) {
+    for (id, sign) in [("brow-left", -1.0), ("brow-right", 1.0)] {
+        let up = head.mix(2.0, -5.0);
+        let arch = head.mix(-5.0, -12.0);
+        let line = [
+            (13.0 * sign, -44.0 + up + head.mix(0.0, 3.0)),
+            (19.0 * sign, -48.0 + up + 0.8 * arch),
+            (26.0 * sign, -48.0 + up + arch),
+            (33.0 * sign, -40.0 + up + 0.4 * arch),
+        ];
+        drawing.fill(id, INK, head.stroke(&line, 12.0, 5.0));
+    }
+}
+
+fn draw_nose(drawing: &mut Drawing, head: &Head) {
+    // The nose stands out of the ball, so it moves further than the rest.
+    let out = 12.0 * head.turn();
+    let lift = head.mix(0.0, -4.0);
+    let place = |across: f64, down: f64| head.on_face(across, down + lift) + Vec2::new(out, 0.0);
+    let ball = [
+        place(-6.5, 44.0),
+        place(-5.0, 35.0),
+        place(0.0, 31.0),
+        place(5.0, 35.0),
+        place(6.5, 44.0),
+        place(4.5, 53.0),
+        place(0.0, 56.0),
+        place(-4.5, 53.0),
+    ];
+    drawing.fill("nose", NOSE, smooth_closed(&ball));
+    let shine = [
+        place(-2.6, 41.0),
+        place(-1.0, 38.0),
+        place(1.0, 39.0),
+        place(0.2, 43.0),
+        place(-1.8, 44.0),
+    ];
+    drawing.fill("nose-shine", "#f0a488", smooth_closed(&shine));
+}
+
+fn draw_mouth(drawing: &mut Drawing, head: &Head) {
+    let corner = (head.mix(15.0, 24.0), head.mix(88.0, 76.0));
+    let upper = [
+        (-corner.0, corner.1),
+        (-0.5 * corner.0, head.mix(97.0, 83.0)),
+        (0.0, head.mix(100.0, 85.0)),
+        (0.5 * corner.0, head.mix(97.0, 83.0)),
+        (corner.0, corner.1),
+    ];
+    let lower = [
+        (0.80 * corner.0, head.mix(93.0, 114.0)),
+        (0.42 * corner.0, head.mix(98.5, 139.0)),
+        (0.0, head.mix(101.0, 146.0)),
+        (-0.42 * corner.0, head.mix(98.5, 139.0)),
+        (-0.80 * corner.0, head.mix(93.0, 114.0)),
+    ];
+    let ring: Vec<(f64, f64)> = upper.iter().chain(&lower).copied().collect();
+    let line = head.ring(&ring);
+    drawing.fill("mouth-line", INK, smooth_closed(&grown(&line, FINE * 0.62)));
+    drawing.fill(
+        "mouth",
+        if head.laugh > 0.5 { MOUTH } else { INK },
+        smooth_closed(&line),
+    );
+    let inner = |points: &[(f64, f64)]| smooth_closed(&head.ring(points));
+    let teeth = [
+        (-0.80 * corner.0, head.mix(93.0, 82.0)),
+        (-0.42 * corner.0, head.mix(98.0, 86.0)),
+        (0.0, head.mix(100.0, 88.0)),
+        (0.42 * corner.0, head.mix(98.0, 86.0)),
+        (0.80 * corner.0, head.mix(93.0, 82.0)),
+        (0.66 * corner.0, head.mix(94.5, 94.0)),
+        (0.0, head.mix(100.6, 101.0)),
+        (-0.66 * corner.0, head.mix(94.5, 94.0)),
+    ];
+    drawing.fill("teeth", if head.laugh > 0.5 { TEETH } else { INK }, inner(&teeth));
+    let tongue = [
+        (-0.48 * corner.0, head.mix(97.6, 133.0)),
+        (-0.26 * corner.0, head.mix(99.0, 121.0)),
+        (0.0, head.mix(100.4, 124.0)),
+        (0.26 * corner.0, head.mix(99.0, 121.0)),
+        (0.48 * corner.0, head.mix(97.6, 133.0)),
+        (0.30 * corner.0, head.mix(98.8, 141.0)),
+        (0.0, head.mix(100.8, 144.0)),
+        (-0.30 * corner.0, head.mix(98.8, 141.0)),
+    ];
+    drawing.fill("tongue", if head.laugh > 0.5 { TONGUE } else { INK }, inner(&tongue));
+}
+
+fn draw_hair(drawing: &mut Drawing, head: &Head, outline: &[Point]) {
+    let crown = &outline[HAIR_POINTS];
+    // The hairline: sideburn, fringe in bumps, sideburn.
+    let lift = head.mix(0.0, -4.0);
+    let fringe = [
+        (66.0, -14.0),
+        (58.0, 18.0),
+        (52.0, -30.0),
+        (46.0, -72.0),
+        (34.0, -98.0 + lift),
+        (23.0, -88.0 + lift),
+        (12.0, -107.0 + lift),
+        (-2.0, -82.0 + lift),
+        (-14.0, -107.0 + lift),
+        (-27.0, -87.0 + lift),
+        (-40.0, -96.0 + lift),
+        (-48.0, -66.0),
+        (-52.0, -30.0),
+        (-58.0, 18.0),
+        (-66.0, -14.0),
+    ];
+    let line = head.ring(&fringe);
+    let mut border = BezPath::new();
+    smooth_through(&mut border, crown);
+    let mut under: Vec<Point> = vec![crown[crown.len() - 1]];
+    under.extend(&line);
+    under.push(crown[0]);
+    // A line of ink under the hairline, then the hair itself.
+    let mut ink = border.clone();
+    let lowered: Vec<Point> = under
+        .iter()
+        .enumerate()
+        .map(|(k, point)| {
+            if k == 0 || k + 1 == under.len() {
+                *point
+            } else {
+                *point + Vec2::new(0.0, FINE)
+            }
+        })
+        .collect();
+    smooth_through(&mut ink, &lowered);
+    ink.close_path();
+    drawing.fill("hair-line", INK, ink);
+    smooth_through(&mut border, &under);
+    border.close_path();
+    drawing.fill("hair", HAIR, border);
+    let sway = -9.0 * head.turn();
+    let light = |points: &[(f64, f64)], width: f64| {
+        let line: Vec<Point> = points
+            .iter()
+            .map(|&(x, y)| head.middle + Vec2::new(x + sway, y))
+            .collect();
+        brush(&line, width, 3.0)
+    };
+    drawing.fill(
+        "shine-left",
+        HAIR_LIGHT,
+        light(
+            &[(-128.0, -108.0), (-104.0, -138.0), (-68.0, -160.0), (-30.0, -170.0)],
+            16.0,
+        ),
+    );
+    drawing.fill(
+        "shine-right",
+        HAIR_LIGHT,
+        light(&[(6.0, -172.0), (22.0, -171.0), (38.0, -168.0)], 11.0),
+    );
+}

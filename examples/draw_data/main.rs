@@ -1,0 +1,26 @@
+//! Draws the three scenes in `data/`: `cargo run --example draw_data -- data`.
+//!
+//! The pictures there were made by this program and are committed beside it. Drawing them again gives the same bytes.
+//!
+//! - [`walker`]: five bitmaps of one figure, drawn from a skeleton;
+//! - [`snake`]: five vector drawings of one body, bent along five centre lines;
+//! - [`face`]: four vector drawings of one head, two expressions by two turns.
+
+mod canvas;
+mod curves;
+mod face;
+mod scene;
+mod snake;
+mod svg;
+mod walker;
+
+use std::error::Error;
+use std::path::PathBuf;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = PathBuf::from(std::env::args().nth(1).ok_or("usage: draw_data FOLDER")?);
+    walker::draw(&folder.join("walker"))?;
+    snake::draw(&folder.join("snake"))?;
+    face::draw(&folder.join("face"))?;
+    Ok(())
+}

@@ -1,0 +1,72 @@
+//! The scene file beside the drawings.
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use kurbo::Point;
+
+use crate::svg::rounded;
+
+/// One drawing and its place.
+#[derive(Debug)]
+pub(crate) struct Pose {
+    pub(crate) name: &'static str,
+    pub(crate) file: String,
+    /// Place in pose space.
+    pub(crate) at: [f64; 2],
+    /// Points of the outline that the artist names; the same names in every pose.
+    pub(crate) landmarks: Vec<(&'static str, Point)>,
+}
+
+/// What a scene file says.
+#[derive(Debug)]
+pub(crate) struct Scene {
+    /// The SVG element whose outline is meant.
+    pub(crate) element: Option<&'static str>,
+    /// The poses; the first is the reference.
+    pub(crate) poses: Vec<Pose>,
+    /// The `[animation]` section as it stands in the file.
+    pub(crate) animation: &'static str,
+}
+
+/// Writes `scene.toml` into `folder`.
+pub(crate) fn save(folder: &Path, scene: &Scene) -> Result<(), Box<dyn Error>> {
+    let mut text = String::from("version = 1\n");
+    let reference = scene.poses.first().ok_or("a scene needs a pose")?;
+    writeln!(text, "reference = \"{}\"", reference.name)?;
+    for pose in &scene.poses {
+        write!(
+            text,
+            "\n[[pose]]\nname = \"{}\"\nsource = \"{}\"\n",
+            pose.name, pose.file
+        )?;
+        if let Some(element) = scene.element {
+            writeln!(text, "element = \"{element}\"")?;
+        }
+        writeln!(text, "at = [{:.1}, {:.1}]", pose.at[0], pose.at[1])?;
+    }
+    for (k, (name, _)) in reference.landmarks.iter().enumerate() {
+        let places: Vec<String> = scene
+            .poses
+            .iter()
+            .map(|pose| {
+                let point = pose.landmarks[k].1;
+                format!("{} = [{}, {}]", pose.name, decimal(point.x), decimal(point.y))
+            })
+            .collect();
+        write!(
+            text,
+            "\n[[landmark]]\nname = \"{name}\"\nat = {{ {} }}\n",
+            places.join(", ")
+        )?;
+    }
+    write!(text, "\n{}", scene.animation)?;
+    std::fs::write(folder.join("scene.toml"), text)?;
+    Ok(())
+}
+
+/// Hundredths, with a decimal point even where there is nothing behind it.
+fn decimal(value: f64) -> String {
+    format!("{:?}", rounded(value))
+}
