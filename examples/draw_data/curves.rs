@@ -166,6 +166,16 @@ impl Limb {
         polygon(&ring)
     }
 
+    /// The shadow along one side (`1.0` or `-1.0`), from `from` to the end; it begins as a point and widens.
+    pub(crate) fn shadow(&self, from: f64, side: f64) -> BezPath {
+        let steps = 40;
+        let along = |k: i32| from + (1.0 - from) * f64::from(k) / f64::from(steps);
+        let inner = |k: i32| 1.0 - 0.6 * (f64::from(k) / f64::from(steps) * 4.0).min(1.0).powf(0.6);
+        let mut ring: Vec<Point> = (0..=steps).map(|k| self.place(along(k), side * inner(k))).collect();
+        ring.extend((0..=steps).rev().map(|k| self.place(along(k), side * 1.2)));
+        polygon(&ring)
+    }
+
     /// The whole limb.
     pub(crate) fn body(&self) -> BezPath {
         self.patch(0.0, 1.0, -1.0, 1.0)

@@ -23,9 +23,11 @@ const INK: &str = "#33202e";
 const SKIN: &str = "#ffd0a6";
 const SKIN_SHADE: &str = "#f2b089";
 const CHEEK: &str = "#f89a83";
+const FRECKLE: &str = "#d9694f";
 const EAR_INSIDE: &str = "#e58d72";
 const NOSE: &str = "#d9775c";
 const HAIR: &str = "#d9542b";
+const HAIR_DARK: &str = "#b23d22";
 const HAIR_LIGHT: &str = "#f07a3f";
 const WHITE: &str = "#fffdf6";
 const IRIS: &str = "#3f8f6b";
@@ -205,7 +207,7 @@ fn outline(head: &Head) -> Vec<Point> {
     let puff = head.mix(0.0, 5.0);
     // The chin follows the turn most, the skull the least; the ear that comes forward is the larger one.
     let lower = 26.0 * turn;
-    let cheek = 10.0 * turn;
+    let cheek = 1.0 * turn;
     let (left_ear, right_ear) = (1.0 + 0.22 * turn, 1.0 - 0.22 * turn);
     let ears = -16.0 * turn;
     let sway = -9.0 * turn;
@@ -213,7 +215,7 @@ fn outline(head: &Head) -> Vec<Point> {
         // Chin, left jaw, left cheek.
         (lower, 172.0 + jaw),
         (-52.0 + lower, 162.0 + 0.9 * jaw),
-        (-118.0 + 0.7 * lower, 116.0 + 0.5 * jaw),
+        (-126.0 + 0.45 * lower, 118.0 + 0.5 * jaw),
         (-146.0 - puff + cheek, 62.0),
         // Left ear.
         (-158.0 - 2.0 * left_ear + ears * 0.4, 50.0),
@@ -248,7 +250,7 @@ fn outline(head: &Head) -> Vec<Point> {
         (158.0 + 2.0 * right_ear + ears * 0.4, 50.0),
         // Right cheek, right jaw.
         (146.0 + puff + cheek, 62.0),
-        (118.0 + 0.7 * lower, 116.0 + 0.5 * jaw),
+        (126.0 + 0.45 * lower, 118.0 + 0.5 * jaw),
         (52.0 + lower, 162.0 + 0.9 * jaw),
     ];
     points.map(|(x, y)| middle + Vec2::new(x, y)).to_vec()
@@ -310,10 +312,14 @@ fn draw_cheeks(drawing: &mut Drawing, head: &Head) {
             CHEEK,
             head.spot((36.0 * sign, down), (head.mix(10.0, 12.0), head.mix(15.0, 18.0))),
         );
+        for (k, (across, below)) in [(-4.5, -3.0), (0.5, 4.0), (5.0, -4.5)].into_iter().enumerate() {
+            let freckle = head.spot((sign * (36.0 + across), down + below), (1.1, 2.6));
+            drawing.fill(format!("freckle-{}-{}", &id[6..], k + 1), FRECKLE, freckle);
+        }
     }
 }
 
-/// An open eye and the arch of a laughing one, point by point.
+/// An open eye, the arch of a laughing one, and the line along the middle of that arch, point by point.
 const OPEN_EYE: [(f64, f64); 8] = [
     (1.0, 0.0),
     (0.72, 0.72),
@@ -334,55 +340,50 @@ const CLOSED_EYE: [(f64, f64); 8] = [
     (0.0, -0.72),
     (0.78, -0.32),
 ];
+const CLOSED_LIDS: [(f64, f64); 8] = [
+    (0.74, -0.13),
+    (0.72, -0.1694),
+    (0.0, -0.5094),
+    (-0.72, -0.1694),
+    (-0.74, -0.13),
+    (-0.72, -0.1706),
+    (0.0, -0.5106),
+    (0.72, -0.1706),
+];
 
 fn draw_eyes(drawing: &mut Drawing, head: &Head) {
-    // A calm eye is an upright oval; laughing squeezes it into an arch.
+    // A calm eye is an upright oval. Laughing closes it to an arch of ink: the white, the iris and the pupil are shut in
+    // between lids that meet, far thinner than a pixel, so that they open again with the eye.
     for (side, sign) in [("left", -1.0), ("right", 1.0)] {
-        let ring: Vec<(f64, f64)> = OPEN_EYE
-            .iter()
-            .zip(CLOSED_EYE)
-            .map(|(&(x, y), (u, v))| {
+        let between = |closed: [(f64, f64); 8]| -> Vec<Point> {
+            let place = |(&(x, y), (u, v)): (&(f64, f64), (f64, f64))| {
                 (
                     24.0 * sign + head.mix(9.5 * x, 11.5 * u),
                     head.mix(4.0 + 27.0 * y, 6.0 + 30.0 * v),
                 )
-            })
-            .collect();
-        let line = head.ring(&ring);
-        drawing.fill(
-            format!("eye-line-{side}"),
-            INK,
-            smooth_closed(&grown(&line, head.mix(FINE, FINE * 0.5))),
-        );
-        let open = head.mix(1.0, 0.0);
-        let white: Vec<Point> = {
-            let middle = head.on_face(24.0 * sign, head.mix(4.0, -8.0));
-            line.iter()
-                .map(|point| middle + (*point - middle) * head.mix(1.0, 0.10))
-                .collect()
+            };
+            head.ring(&OPEN_EYE.iter().zip(closed).map(place).collect::<Vec<_>>())
         };
-        drawing.fill(
-            format!("eye-{side}"),
-            if open > 0.5 { WHITE } else { INK },
-            smooth_closed(&white),
-        );
-        let look = 2.4 * head.turn();
-        let scale = head.mix(1.0, 0.08);
-        let (x, y) = (24.0 * sign + look, head.mix(7.0, -8.0));
+        let line = grown(&between(CLOSED_EYE), head.mix(FINE, 0.5 * FINE));
+        drawing.fill(format!("eye-line-{side}"), INK, smooth_closed(&line));
+        drawing.fill(format!("eye-{side}"), WHITE, smooth_closed(&between(CLOSED_LIDS)));
+        let (x, y) = (24.0 * sign + head.mix(2.4, 0.0) * head.turn(), head.mix(7.0, -9.3));
+        let (width, height) = (head.mix(1.0, 0.3), head.mix(1.0, 0.001));
         drawing.fill(
             format!("iris-{side}"),
-            if open > 0.5 { IRIS } else { INK },
-            head.spot((x, y), (6.4 * scale, 19.0 * scale)),
+            IRIS,
+            head.spot((x, y), (6.4 * width, 19.0 * height)),
         );
         drawing.fill(
             format!("pupil-{side}"),
             INK,
-            head.spot((x, y), (3.8 * scale, 11.5 * scale)),
+            head.spot((x, y), (3.8 * width, 11.5 * height)),
         );
+        let glint = (x + 2.0 * width, y - 8.0 * height);
         drawing.fill(
             format!("glint-{side}"),
-            if open > 0.5 { WHITE } else { INK },
-            head.spot((x + 2.0 * scale, y - 8.0 * scale), (2.0 * scale, 5.5 * scale)),
+            WHITE,
+            head.spot(glint, (2.0 * width, 5.5 * height)),
         );
     }
 }
@@ -437,20 +438,20 @@ fn draw_mouth(drawing: &mut Drawing, head: &Head) {
         (corner.0, corner.1),
     ];
     let lower = [
-        (0.80 * corner.0, head.mix(93.0, 114.0)),
-        (0.42 * corner.0, head.mix(98.5, 139.0)),
-        (0.0, head.mix(101.0, 146.0)),
-        (-0.42 * corner.0, head.mix(98.5, 139.0)),
-        (-0.80 * corner.0, head.mix(93.0, 114.0)),
+        (0.80 * corner.0, head.mix(93.4, 114.0)),
+        (0.42 * corner.0, head.mix(99.0, 139.0)),
+        (0.0, head.mix(101.4, 146.0)),
+        (-0.42 * corner.0, head.mix(99.0, 139.0)),
+        (-0.80 * corner.0, head.mix(93.4, 114.0)),
     ];
     let ring: Vec<(f64, f64)> = upper.iter().chain(&lower).copied().collect();
     let line = head.ring(&ring);
-    drawing.fill("mouth-line", INK, smooth_closed(&grown(&line, FINE * 0.62)));
     drawing.fill(
-        "mouth",
-        if head.laugh > 0.5 { MOUTH } else { INK },
-        smooth_closed(&line),
+        "mouth-line",
+        INK,
+        smooth_closed(&grown(&line, FINE * head.mix(0.7, 0.62))),
     );
+    drawing.fill("mouth", MOUTH, smooth_closed(&line));
     let inner = |points: &[(f64, f64)]| smooth_closed(&head.ring(points));
     let teeth = [
         (-0.80 * corner.0, head.mix(93.0, 82.0)),
@@ -458,10 +459,11 @@ fn draw_mouth(drawing: &mut Drawing, head: &Head) {
         (0.0, head.mix(100.0, 88.0)),
         (0.42 * corner.0, head.mix(98.0, 86.0)),
         (0.80 * corner.0, head.mix(93.0, 82.0)),
-        (0.66 * corner.0, head.mix(94.5, 94.0)),
-        (0.0, head.mix(100.6, 101.0)),
-        (-0.66 * corner.0, head.mix(94.5, 94.0)),
+        (0.66 * corner.0, head.mix(95.9, 94.0)),
+        (0.0, head.mix(100.9, 101.0)),
+        (-0.66 * corner.0, head.mix(95.9, 94.0)),
     ];
+    // Behind closed lips it is dark.
     drawing.fill("teeth", if head.laugh > 0.5 { TEETH } else { INK }, inner(&teeth));
     let tongue = [
         (-0.48 * corner.0, head.mix(97.6, 133.0)),
@@ -480,11 +482,13 @@ fn draw_hair(drawing: &mut Drawing, head: &Head, outline: &[Point]) {
     let crown = &outline[HAIR_POINTS];
     // The hairline: sideburn, fringe in bumps, sideburn.
     let lift = head.mix(0.0, -4.0);
+    // The sideburn that turns away gets short.
+    let (left, right) = ((-head.turn()).max(0.0), head.turn().max(0.0));
     let fringe = [
-        (66.0, -14.0),
-        (58.0, 18.0),
-        (52.0, -30.0),
-        (46.0, -72.0),
+        (66.0 - 20.0 * right, -14.0 - 12.0 * right),
+        (58.0 - 14.0 * right, 18.0 - 54.0 * right),
+        (52.0 - 9.0 * right, -30.0 - 19.0 * right),
+        (46.0 - 4.0 * right, -72.0),
         (34.0, -98.0 + lift),
         (23.0, -88.0 + lift),
         (12.0, -107.0 + lift),
@@ -492,10 +496,10 @@ fn draw_hair(drawing: &mut Drawing, head: &Head, outline: &[Point]) {
         (-14.0, -107.0 + lift),
         (-27.0, -87.0 + lift),
         (-40.0, -96.0 + lift),
-        (-48.0, -66.0),
-        (-52.0, -30.0),
-        (-58.0, 18.0),
-        (-66.0, -14.0),
+        (-48.0 + 6.0 * left, -66.0),
+        (-52.0 + 9.0 * left, -30.0 - 19.0 * left),
+        (-58.0 + 14.0 * left, 18.0 - 54.0 * left),
+        (-66.0 + 20.0 * left, -14.0 - 12.0 * left),
     ];
     let line = head.ring(&fringe);
     let mut border = BezPath::new();
@@ -503,26 +507,39 @@ fn draw_hair(drawing: &mut Drawing, head: &Head, outline: &[Point]) {
     let mut under: Vec<Point> = vec![crown[crown.len() - 1]];
     under.extend(&line);
     under.push(crown[0]);
-    // A line of ink under the hairline, then the hair itself.
-    let mut ink = border.clone();
-    let lowered: Vec<Point> = under
-        .iter()
-        .enumerate()
-        .map(|(k, point)| {
-            if k == 0 || k + 1 == under.len() {
-                *point
-            } else {
-                *point + Vec2::new(0.0, FINE)
-            }
-        })
-        .collect();
-    smooth_through(&mut ink, &lowered);
-    ink.close_path();
-    drawing.fill("hair-line", INK, ink);
+    // A line of ink around the hair, then the hair itself.
+    let mut ring: Vec<Point> = crown.to_vec();
+    let last = crown.len() - 1;
+    for (end, before, after, away) in [
+        (0, crown[1], line[line.len() - 1], left),
+        (last, crown[last - 1], line[0], right),
+    ] {
+        ring[end] = crown[end].lerp(head.middle, 0.04).lerp(before.midpoint(after), away);
+    }
+    ring.extend(&line);
+    drawing.fill("hair-line", INK, smooth_closed(&grown(&ring, 0.9 * FINE)));
     smooth_through(&mut border, &under);
     border.close_path();
     drawing.fill("hair", HAIR, border);
     let sway = -9.0 * head.turn();
+    let strands: [(&str, [(f64, f64); 4]); 3] = [
+        (
+            "strand-left",
+            [(-14.0, -186.0), (-48.0, -170.0), (-76.0, -148.0), (-92.0, -124.0)],
+        ),
+        (
+            "strand-middle",
+            [(12.0, -190.0), (8.0, -166.0), (10.0, -142.0), (18.0, -122.0)],
+        ),
+        (
+            "strand-right",
+            [(38.0, -184.0), (74.0, -164.0), (104.0, -132.0), (122.0, -94.0)],
+        ),
+    ];
+    for (id, points) in strands {
+        let line = points.map(|(x, y)| head.middle + Vec2::new(x + 1.3 * sway, y));
+        drawing.fill(id, HAIR_DARK, brush(&line, 7.0, 2.5));
+    }
     let light = |points: &[(f64, f64)], width: f64| {
         let line: Vec<Point> = points
             .iter()
@@ -534,7 +551,7 @@ fn draw_hair(drawing: &mut Drawing, head: &Head, outline: &[Point]) {
         "shine-left",
         HAIR_LIGHT,
         light(
-            &[(-128.0, -108.0), (-104.0, -138.0), (-68.0, -160.0), (-30.0, -170.0)],
+            &[(-122.0, -116.0), (-110.0, -133.0), (-93.0, -149.0), (-74.0, -161.0)],
             16.0,
         ),
     );

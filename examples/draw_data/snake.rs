@@ -83,8 +83,8 @@ fn swing(s: f64, phase_deg: f64) -> f64 {
 /// Curvature of a spiral with even gaps, the tail in its middle; the neck opens and the head looks out.
 fn coil(s: f64) -> f64 {
     const INNER_RADIUS: f64 = 30.0;
-    const PITCH: f64 = 78.0;
-    const NECK: f64 = 770.0;
+    const PITCH: f64 = 84.0;
+    const NECK: f64 = 740.0;
     let radius = |s: f64| {
         // From s = r0 a + PITCH a^2 / (4 pi), a the angle turned so far.
         let quadratic = PITCH / (4.0 * PI);
@@ -92,7 +92,7 @@ fn coil(s: f64) -> f64 {
         INNER_RADIUS + PITCH * angle_rad / (2.0 * PI)
     };
     let opening = smooth_step((s - NECK) / (LENGTH - NECK));
-    (1.0 - 1.35 * opening) / radius(s.min(LENGTH))
+    (1.0 - 1.6 * opening) / radius(s.min(LENGTH))
 }
 
 fn smooth_step(x: f64) -> f64 {
@@ -360,9 +360,14 @@ fn tongue_side(margin: f64) -> Vec<Point> {
 
 /// The side of the skin that lies in shadow.
 fn lower_side() -> BezPath {
-    let reach: Vec<f64> = PROFILE[3..15].iter().map(|&(s, _)| s).collect();
-    let mut ring = vec![at(30.0, 3.6)];
-    ring.extend(reach.iter().map(|&s| at(s, 0.62 * half_width(s))));
-    ring.extend(reach.iter().rev().map(|&s| at(s, half_width(s))));
-    smooth_closed(&ring)
+    let ends = [70.0, 900.0].map(|s| at(s, 0.97 * half_width(s)));
+    let edge = |share: f64| -> Vec<Point> {
+        let between = PROFILE[4..13].iter().map(|&(s, _)| at(s, share * half_width(s)));
+        std::iter::once(ends[0]).chain(between).chain([ends[1]]).collect()
+    };
+    let mut path = BezPath::new();
+    smooth_through(&mut path, &edge(0.62));
+    smooth_through(&mut path, &edge(0.97).into_iter().rev().collect::<Vec<_>>());
+    path.close_path();
+    path
 }

@@ -21,6 +21,7 @@ const GROUND_PX: f64 = 684.0;
 /// Bones of a leg, pixels.
 const THIGH: f64 = 82.0;
 const SHIN: f64 = 78.0;
+const HIP_RADIUS: f64 = 28.0;
 /// Thickness of the ink line around the figure.
 const LINE: f64 = 5.5;
 /// Thickness of ink lines inside the figure.
@@ -265,6 +266,7 @@ fn draw_figure(canvas: &mut Canvas, posture: &Posture) {
 
 struct Leg {
     limb: Limb,
+    hip: Point,
     foot: Affine,
 }
 
@@ -282,12 +284,12 @@ impl Leg {
                 (knee, knee + hanging(sign * angles.lower) * SHIN, angles.tip)
             }
         };
-        let limb = Limb::new([hip, knee, ankle], [28.0, 23.0, 22.0], 0.7);
+        let limb = Limb::new([hip, knee, ankle], [HIP_RADIUS, 23.0, 22.0], 0.7);
         // The foot is drawn for the right side; on the left it is mirrored.
         let foot = Affine::translate(ankle.to_vec2())
             * Affine::scale_non_uniform(sign, 1.0)
             * Affine::rotate(-toe_lift_deg.to_radians());
-        Self { limb, foot }
+        Self { limb, hip, foot }
     }
 }
 
@@ -311,9 +313,9 @@ fn draw_shoes(canvas: &mut Canvas, legs: &[Leg; 2]) {
         at(44.0, 4.0),
         at(64.0, 8.0),
         at(78.0, 20.0),
-        at(78.0, 34.0),
-        at(40.0, 38.0),
-        at(0.0, 38.0),
+        at(76.0, 31.0),
+        at(40.0, 33.0),
+        at(0.0, 33.0),
     ]);
     let sole = RoundedRect::from_rect(Rect::new(-32.0, 26.0, 84.0, 40.0), 7.0).to_path(0.05);
     for leg in legs {
@@ -346,17 +348,21 @@ fn draw_trousers(canvas: &mut Canvas, torso: Affine, legs: &[Leg; 2]) {
             at(0.0, -40.0),
             at(60.0, -30.0),
             at(59.0, 6.0),
-            at(34.0, 22.0),
-            at(0.0, 27.0),
-            at(-34.0, 22.0),
+            at(36.0, 20.0),
+            at(0.0, 25.0),
+            at(-36.0, 20.0),
             at(-59.0, 6.0),
         ]),
     );
-    let bodies: Vec<BezPath> = legs.iter().map(|leg| leg.limb.body()).collect();
-    for part in bodies.iter().chain([&seat]) {
+    let mut parts = vec![seat];
+    for leg in legs {
+        parts.push(leg.limb.body());
+        parts.push(Circle::new(leg.hip, HIP_RADIUS).to_path(0.05));
+    }
+    for part in &parts {
         canvas.ink(part, LINE, INK);
     }
-    for part in bodies.iter().chain([&seat]) {
+    for part in &parts {
         canvas.fill(part, TROUSERS);
     }
     for leg in legs {
@@ -364,10 +370,7 @@ fn draw_trousers(canvas: &mut Canvas, torso: Affine, legs: &[Leg; 2]) {
         let hem = leg.limb.patch(0.87, 1.0, -1.14, 1.14);
         canvas.ink(&hem, LINE * 0.75, INK);
         canvas.fill(&hem, TURN_UP);
-        canvas.shade(
-            &leg.limb.patch(0.1, 1.0, -1.3, -0.4),
-            &leg.limb.patch(0.1, 1.0, -1.14, 1.14),
-        );
+        canvas.shade(&leg.limb.shadow(0.05, -1.0), &leg.limb.patch(0.0, 1.0, -1.14, 1.14));
     }
 }
 
@@ -482,12 +485,7 @@ fn draw_sweater(canvas: &mut Canvas, torso: Affine, arms: &[Arm; 2]) {
     for arm in arms {
         canvas.fill(&arm.limb.patch(0.48, 0.62, -1.0, 1.0), CREAM);
         // The side away from the thumb lies in shadow.
-        let (from, to) = if arm.side == Side::Right {
-            (0.4, 1.0)
-        } else {
-            (-1.0, -0.4)
-        };
-        canvas.shade(&arm.limb.patch(0.25, 1.0, from, to), &arm.limb.body());
+        canvas.shade(&arm.limb.shadow(0.22, arm.side.sign()), &arm.limb.body());
     }
     for (top, bottom) in [(-72.0, -50.0), (-22.0, 10.0)] {
         let mut stripe = BezPath::new();
