@@ -142,7 +142,7 @@ pub fn triangulate(polygons: &[Outline]) -> Result<(CompatibleMesh, TriangulateR
         triangles: Vec::new(),
         report: TriangulateReport::default(),
     };
-    division.run((0..count).collect())?;
+    division.solve((0..count).collect())?;
 
     let mut mesh = EditableMesh::new(division.positions, &division.triangles);
     let mut report = division.report;
@@ -160,8 +160,9 @@ struct Division {
 }
 
 impl Division {
-    fn run(&mut self, polygon: Vec<usize>) -> Result<(), TriangulateError> {
-        let mut pieces = vec![polygon];
+    /// Triangulates a piece and everything it falls into.
+    fn solve(&mut self, piece: Vec<usize>) -> Result<(), TriangulateError> {
+        let mut pieces = vec![piece];
         while let Some(piece) = pieces.pop() {
             if let [a, b, c] = piece[..] {
                 self.triangles.push([a, b, c]);
@@ -182,7 +183,7 @@ impl Division {
             }
             let diagonals = line_of_sight::largest_partition(piece.len(), &common);
             if diagonals.is_empty() {
-                self.divide_stuck(&piece, &sights, &mut pieces)?;
+                self.solve_stuck(&piece, &sights)?;
             } else {
                 let faces = line_of_sight::faces(piece.len(), &diagonals);
                 pieces.extend(
@@ -195,26 +196,21 @@ impl Division {
         Ok(())
     }
 
-    /// Divides a piece without any common diagonal.
-    fn divide_stuck(
-        &mut self,
-        piece: &[usize],
-        sights: &[Sight],
-        pieces: &mut Vec<Vec<usize>>,
-    ) -> Result<(), TriangulateError> {
-        if let Some(hub) = single_steiner::star(sights).or_else(|| single_steiner::best_hub(sights)) {
-            self.report.single += 1;
-            self.join_hub(piece, &hub, pieces);
+    /// Triangulates a piece without any common diagonal: over a hub or a path, and where the parts that leaves are too
+    /// narrow, or there is neither, by the overlay.
+    fn solve_stuck(&mut self, piece: &[usize], sights: &[Sight]) -> Result<(), TriangulateError> {
+        let (vertices, triangles, report) = (self.positions[0].len(), self.triangles.len(), self.report);
+        if self.solve_divided(piece, sights) {
             return Ok(());
         }
-        if let Some(path) = link_path::shortest_path(sights) {
-            self.report.link += path.interior[0].len();
-            self.join_path(piece, &path, pieces);
-            return Ok(());
+        for positions in &mut self.positions {
+            positions.truncate(vertices);
         }
+        self.triangles.truncate(triangles);
+        self.report = report;
+
         let overlay = chord_overlay::overlay(sights).ok_or_else(|| self.too_narrow(piece))?;
         self.report.overlay += overlay.steiner_count();
-        let start = self.positions[0].len();
         for (positions, added) in self.positions.iter_mut().zip(&overlay.points) {
             positions.extend_from_slice(added);
         }
@@ -222,11 +218,26 @@ impl Division {
             if k < piece.len() {
                 piece[k]
             } else {
-                start + k - piece.len()
+                vertices + k - piece.len()
             }
         };
         self.triangles.extend(overlay.triangles.iter().map(|t| t.map(global)));
         Ok(())
+    }
+
+    /// Divides a stuck piece and triangulates the parts; false if there is no division, or a part cannot be done.
+    fn solve_divided(&mut self, piece: &[usize], sights: &[Sight]) -> bool {
+        let mut parts = Vec::new();
+        if let Some(hub) = single_steiner::star(sights).or_else(|| single_steiner::best_hub(sights)) {
+            self.report.single += 1;
+            self.join_hub(piece, &hub, &mut parts);
+        } else if let Some(path) = link_path::shortest_path(sights) {
+            self.report.link += path.interior[0].len();
+            self.join_path(piece, &path, &mut parts);
+        } else {
+            return false;
+        }
+        parts.into_iter().all(|part| self.solve(part).is_ok())
     }
 
     fn join_hub(&mut self, piece: &[usize], hub: &Hub, pieces: &mut Vec<Vec<usize>>) {

@@ -7,18 +7,22 @@
 //! recursion ends.
 //!
 //! Regions are found by clipping triangles with the cones of [`super::visibility`]; the point is the centre of the
-//! region, and each spoke is then proven with exact predicates. Cost O(m^3) for the polygon of m vertices, which is
-//! why larger polygons skip this stage.
+//! region, and each spoke is then proven with exact predicates. Cost O(m) regions for each of a bounded number of pairs
+//! of vertices.
 
 use super::convex::Convex;
 use super::visibility::{Sight, View};
 use crate::math::{Point, point, predicate};
 
-/// The largest polygon that is searched for pairs.
-const LARGEST_POLYGON: usize = 64;
+/// Up to this many vertices every pair is a candidate; of larger polygons, as many vertices spread evenly.
+const CANDIDATES: usize = 64;
 
-/// How many starting pairs are tried, those with the roomiest common region first.
+/// How many starting pairs are tried, those with the roomiest common region first; fewer in larger polygons, in
+/// proportion.
 const STARTING_PAIRS: usize = 150;
+
+/// Larger polygons go to the overlay.
+const LARGEST_POLYGON: usize = 256;
 
 /// A region is used if the circle about its centre has at least this radius, as a fraction of the polygon's diagonal.
 const SMALLEST_CLEARANCE: f64 = 1e-7;
@@ -61,8 +65,9 @@ pub(super) fn best_hub(sights: &[Sight]) -> Option<Hub> {
     }
     let rooms: Vec<Rooms> = sights.iter().map(Rooms::new).collect();
     let mut starts: Vec<(f64, usize, usize)> = Vec::new();
-    for i in 0..count {
-        for j in i + 2..count {
+    let stride = count.div_ceil(CANDIDATES);
+    for i in (0..count).step_by(stride) {
+        for j in (i + 2.max(stride)..count).step_by(stride) {
             let clearance = rooms
                 .iter()
                 .map(|room| room.roomiest(&[i, j]).map_or(0.0, |(_, clearance)| clearance))
@@ -75,7 +80,7 @@ pub(super) fn best_hub(sights: &[Sight]) -> Option<Hub> {
     starts.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     starts
         .iter()
-        .take(STARTING_PAIRS)
+        .take(STARTING_PAIRS / (stride * stride))
         .filter_map(|&(_, i, j)| grown_hub(&rooms, i, j, count))
         .max_by(|a, b| a.0.len().cmp(&b.0.len()).then(a.1.total_cmp(&b.1)).then(b.0.cmp(&a.0)))
         .and_then(|(spokes, _)| {
