@@ -11,6 +11,8 @@ pub mod angle;
 pub mod matrix;
 pub mod point;
 pub mod predicate;
+pub mod smooth_step;
 
 pub use matrix::{Matrix, PolarSplit, rotation};
 pub use point::Point;
+pub use smooth_step::{limit_weights, smooth_step};
