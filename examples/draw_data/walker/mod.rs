@@ -1,0 +1,97 @@
+//! The walker: five bitmaps of one figure, drawn from a skeleton.
+//!
+//! The figure is seen from the front. Its limbs stay apart from the body and from one another in every pose, so each
+//! pose is one outline without holes, and going round it meets the same features in the same order: pompom, ear, thumb,
+//! hand, shoe, crotch, shoe, hand, thumb, ear. What is drawn inside a part is fixed to that part, so the five pictures
+//! coincide when they are warped onto one another.
+
+mod body;
+mod head;
+mod posture;
+mod style;
+
+use std::error::Error;
+use std::path::Path;
+
+use crate::canvas::Canvas;
+use crate::scene::{self, Pose, Scene};
+use body::{Arm, Leg, draw_scarf, draw_shoes, draw_sweater, draw_trousers};
+use head::{draw_cap, draw_cap_tip, draw_head, pompom_top};
+use posture::{Posture, Side, postures};
+
+const WIDTH_PX: u32 = 640;
+const HEIGHT_PX: u32 = 720;
+
+const ANIMATION: &str = "\
+[animation]
+fps = 24
+loop = true
+size = [480, 540]
+background = \"white\"
+# Two steps to either side with a little hop between them, a jump, a wave.
+keys = [
+  { time = 0.0, at = [0.0, 0.0] },
+  { time = 0.35, at = [-1.0, 0.0] },
+  { time = 0.7, at = [0.0, 0.15] },
+  { time = 1.05, at = [1.0, 0.0] },
+  { time = 1.4, at = [0.0, 0.15] },
+  { time = 1.75, at = [-1.0, 0.0] },
+  { time = 2.1, at = [0.0, 0.15] },
+  { time = 2.45, at = [1.0, 0.0] },
+  { time = 2.85, at = [0.0, 0.0] },
+  { time = 3.2, at = [0.0, 1.0] },
+  { time = 3.35, at = [0.0, 1.0] },
+  { time = 3.7, at = [0.0, 0.0] },
+  { time = 4.15, at = [0.0, -1.0] },
+  { time = 4.4, at = [0.0, -0.72] },
+  { time = 4.65, at = [0.0, -1.0] },
+  { time = 4.9, at = [0.0, -0.72] },
+  { time = 5.15, at = [0.0, -1.0] },
+  { time = 5.7, at = [0.0, 0.0] },
+]
+";
+
+/// Draws the five poses into `folder`.
+pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
+    std::fs::create_dir_all(folder)?;
+    let mut poses = Vec::new();
+    for posture in postures() {
+        let mut canvas = Canvas::new(WIDTH_PX, HEIGHT_PX)?;
+        draw_figure(&mut canvas, &posture);
+        let file = format!("{}.png", posture.name);
+        canvas.save(&folder.join(&file))?;
+        let top = pompom_top(posture.head(), posture.flop_deg);
+        poses.push(Pose {
+            name: posture.name,
+            file,
+            at: posture.at,
+            landmarks: vec![("pompom", top)],
+        });
+    }
+    scene::save(
+        folder,
+        &Scene {
+            element: None,
+            poses,
+            animation: ANIMATION,
+        },
+    )
+}
+
+/// From the feet up to the cap.
+fn draw_figure(canvas: &mut Canvas, posture: &Posture) {
+    let (torso, head) = (posture.torso(), posture.head());
+    let legs =
+        [(Side::Left, posture.left_leg), (Side::Right, posture.right_leg)].map(|(s, l)| Leg::new(posture.hips, s, l));
+    let arms = [(Side::Left, posture.left_arm), (Side::Right, posture.right_arm)].map(|(s, l)| Arm::new(torso, s, l));
+    draw_shoes(canvas, &legs);
+    draw_trousers(canvas, torso, &legs);
+    for arm in &arms {
+        arm.draw_hand(canvas);
+    }
+    draw_sweater(canvas, torso, &arms);
+    draw_cap_tip(canvas, head, posture.flop_deg);
+    draw_scarf(canvas, torso);
+    draw_head(canvas, head, posture);
+    draw_cap(canvas, head, posture.flop_deg);
+}
