@@ -15,7 +15,7 @@ const STAGES: [(&str, &[&str]); 10] = [
     ("weights", &[]),
     ("blend", &["pose"]),
     ("texture", &[]),
-    ("render", &["input", "pose"]),
+    ("render", &["input", "matching", "pose"]),
     ("scene", &[]),
     ("export", &["render"]),
 ];
@@ -28,7 +28,10 @@ fn is_type(item: &str) -> bool {
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder).expect("the folder of sources").map(|e| e.expect("an entry")) {
+    for entry in std::fs::read_dir(folder)
+        .expect("the folder of sources")
+        .map(|e| e.expect("an entry"))
+    {
         let path = entry.path();
         if path.is_dir() {
             files.extend(sources(&path));
@@ -53,7 +56,9 @@ fn crate_paths(text: &str) -> BTreeSet<(String, String)> {
         let rest = part[module.len()..].strip_prefix("::").unwrap_or("");
         let items: Vec<String> = if let Some(list) = rest.strip_prefix('{') {
             let list = list.split("};").next().unwrap_or("");
-            list.split(',').map(|item| item.trim().split("::").next().unwrap_or("").to_owned()).collect()
+            list.split(',')
+                .map(|item| item.trim().split("::").next().unwrap_or("").to_owned())
+                .collect()
         } else {
             vec![rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()]
         };
@@ -71,7 +76,13 @@ fn every_import_obeys_the_law() {
     let mut paths = 0;
     for file in sources(&root) {
         let inside = file.strip_prefix(&root).expect("below src");
-        let own = inside.components().next().expect("a name").as_os_str().to_string_lossy().into_owned();
+        let own = inside
+            .components()
+            .next()
+            .expect("a name")
+            .as_os_str()
+            .to_string_lossy()
+            .into_owned();
         let text = std::fs::read_to_string(&file).expect("readable");
         for (module, item) in crate_paths(&text) {
             paths += 1;
@@ -100,7 +111,10 @@ fn every_import_obeys_the_law() {
             }
         }
     }
-    assert!(paths > 50, "only {paths} imports were found: the test does not read the sources any more");
+    assert!(
+        paths > 50,
+        "only {paths} imports were found: the test does not read the sources any more"
+    );
     assert!(broken.is_empty(), "imports against the law:\n{}", broken.join("\n"));
 }
 
@@ -110,9 +124,21 @@ fn files_are_touched_only_where_the_law_allows() {
     let may = ["input", "scene", "export", "cli", "main.rs"];
     for file in sources(&root) {
         let inside = file.strip_prefix(&root).expect("below src");
-        let own = inside.components().next().expect("a name").as_os_str().to_string_lossy().into_owned();
+        let own = inside
+            .components()
+            .next()
+            .expect("a name")
+            .as_os_str()
+            .to_string_lossy()
+            .into_owned();
         let text = std::fs::read_to_string(&file).expect("readable");
-        let reaches = ["std::fs", "std::env", "std::time", "File::open"].iter().any(|path| text.contains(path));
-        assert!(!reaches || may.contains(&own.as_str()), "{} reaches outside the program", inside.display());
+        let reaches = ["std::fs", "std::env", "std::time", "File::open"]
+            .iter()
+            .any(|path| text.contains(path));
+        assert!(
+            !reaches || may.contains(&own.as_str()),
+            "{} reaches outside the program",
+            inside.display()
+        );
     }
 }

@@ -7,7 +7,7 @@
 //!
 //! Data are nine numbers: value, derivative along x, derivative along y at each of the three corners.
 
-use crate::math::{Matrix, Point, point};
+use crate::math::{Matrix, Point};
 use crate::mesh::geometry;
 
 /// The ten Bezier ordinates of a cubic on a sub-triangle, at `INDEX[exponent of corner 0][exponent of corner 1]`.

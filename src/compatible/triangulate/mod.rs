@@ -4,7 +4,8 @@
 //! vertex by vertex. Source: NWM 3.1 "Compatible triangulation", after Baxter, Barla, Anjyo (2008); the last resort
 //! after Aronov, Seidel, Souvaine, "On compatible triangulations of simple polygons" (1993).
 //!
-//! A piece is a list of corresponding vertices that bound a simple polygon in every pose. Each piece is
+//! Holes are first joined to the outer ring by bridges ([`bridge`]). A piece is a list of corresponding vertices that
+//! bound a simple polygon (weakly simple along bridges) in every pose. Each piece is
 //! 1. triangulated with diagonals that have line of sight in all poses, or divided by as many of them as possible
 //!    ([`line_of_sight`]); what has none left is
 //! 2. divided by a Steiner point that several vertices see in all poses ([`single_steiner`]), or
@@ -21,6 +22,7 @@
 //! Guarantee: every triangle is positive in every pose by an exact predicate. Cost: quadratic in the vertices of a
 //! piece for visibility, cubic within pieces of at most 64 vertices for Steiner points.
 
+mod bridge;
 mod chord_overlay;
 mod convex;
 mod decimate;
@@ -77,15 +79,13 @@ pub enum TriangulateError {
         /// Vertices of the same ring in pose 0.
         expected: usize,
     },
-    /// Polygons with holes.
+    /// No hole can be joined to the rest by a segment that is inside every pose.
     #[error(
-        "pose {pose} has {holes} holes; fill them (holes = \"fill\"), polygons with holes cannot be triangulated yet"
+        "hole {hole} has no vertex that sees the same outline or hole vertex in every pose; fill the holes (holes = \"fill\") or move it"
     )]
-    Holes {
-        /// Which pose.
-        pose: usize,
-        /// How many.
-        holes: usize,
+    NoBridge {
+        /// Which hole, from 0.
+        hole: usize,
     },
     /// A corridor of a polygon is so narrow that no valid mesh was found in double precision.
     #[error(
@@ -109,7 +109,8 @@ pub enum TriangulateError {
 /// Vertex `k` of ring `r` is vertex `k` of the mesh plus the lengths of the rings before; Steiner points follow.
 ///
 /// # Errors
-/// [`TriangulateError`] if the polygons do not correspond, have holes, or are too narrow for double precision.
+/// [`TriangulateError`] if the polygons do not correspond, a hole cannot be joined, or a corridor is too narrow for
+/// double precision.
 pub fn triangulate(polygons: &[Outline]) -> Result<(CompatibleMesh, TriangulateReport), TriangulateError> {
     let first = polygons.first().ok_or(TriangulateError::NoPose)?;
     for (pose, polygon) in polygons.iter().enumerate() {
@@ -125,29 +126,28 @@ pub fn triangulate(polygons: &[Outline]) -> Result<(CompatibleMesh, TriangulateR
                 });
             }
         }
-        if !polygon.holes().is_empty() {
-            return Err(TriangulateError::Holes {
-                pose,
-                holes: polygon.holes().len(),
-            });
-        }
     }
     let positions: Vec<Vec<Point>> = polygons
         .iter()
-        .map(|polygon| polygon.outer().points().to_vec())
+        .map(|polygon| polygon.rings().iter().flat_map(|ring| ring.points()).copied().collect())
         .collect();
-    let count = first.outer().len();
+    let mut rings: Vec<Vec<usize>> = Vec::new();
+    let mut count = 0;
+    for ring in first.rings() {
+        rings.push((count..count + ring.len()).collect());
+        count += ring.len();
+    }
+    let joined = bridge::join_rings(&positions, &rings).map_err(|hole| TriangulateError::NoBridge { hole })?;
     let mut division = Division {
         positions,
         triangles: Vec::new(),
         report: TriangulateReport::default(),
     };
-    division.solve((0..count).collect())?;
+    division.solve(joined)?;
 
     let mut mesh = EditableMesh::new(division.positions, &division.triangles);
     let mut report = division.report;
     report.decimated = decimate::decimate(&mut mesh, count);
-    let rings = vec![(0..count).collect()];
     let steiner = report.single + report.link + report.overlay - report.decimated;
     Ok((mesh.finish(&rings, steiner)?, report))
 }
