@@ -1,5 +1,28 @@
-//! Boundary matching.
+//! Boundary matching (NWM 3.1): which point of every outline corresponds to which.
+//!
+//! [`match_rings`] takes N closed curves and landmarks and returns a [`Correspondence`].
+//!
+//! - `curve`: a ring with place and size taken out; turning over several windows.
+//! - `feature`: salient points in curvature scale space; they give each curve a start that depends on its shape only.
+//! - `elastic`, `start`: dynamic programming over turning and stretch, over all cyclic starts.
+//! - `coarse`, `pair`, `thin_plate`, `monotone`: from coarse candidates to the match of a pose to the reference.
+//! - `n_way`, `landmark`: all poses, guided by landmarks.
 
+mod coarse;
 mod correspondence;
+mod curve;
+mod elastic;
+mod error;
+mod feature;
+mod landmark;
+mod monotone;
+mod n_way;
+mod pair;
+mod start;
+mod thin_plate;
 
 pub use correspondence::{Correspondence, CorrespondenceError};
+pub use error::MatchError;
+pub use feature::SalientPoint;
+pub use landmark::Landmark;
+pub use n_way::{MatchOptions, MatchReport, MirrorHints, PoseMatch, RingMatch, match_rings};

@@ -1,0 +1,79 @@
+//! Coarse matches of two whole curves: which starts are worth a closer look, and how alike the curves are.
+
+use super::curve::Curve;
+use super::elastic::{MismatchTable, Path};
+use super::feature::{SalientPoint, natural_start, salient_points};
+use super::monotone::CyclicMap;
+use super::start::{distinct_minima, path_from_each_start};
+use crate::outline::{Ring, RingError};
+
+/// Starts nearer than this, in perimeters, are one start.
+const APART: f64 = 0.02;
+
+/// One pose's outline with what is measured on it once.
+#[derive(Debug, Clone)]
+pub(super) struct Form {
+    /// The curve.
+    pub(super) curve: Curve,
+    /// Its salient points.
+    pub(super) salient: Vec<SalientPoint>,
+    /// A parameter that depends on the shape only, not on the ring's first point.
+    pub(super) start: f64,
+}
+
+impl Form {
+    /// Measures `ring`.
+    pub(super) fn new(ring: &Ring) -> Result<Self, RingError> {
+        Ok(Self::of(Curve::new(ring)?))
+    }
+
+    /// Measures `ring` as seen in a mirror.
+    pub(super) fn mirrored(ring: &Ring) -> Result<Self, RingError> {
+        Ok(Self::of(Curve::mirrored(ring)?))
+    }
+
+    fn of(curve: Curve) -> Self {
+        let salient = salient_points(&curve);
+        let start = natural_start(&curve, &salient);
+        Self { curve, salient, start }
+    }
+
+    /// `count` parameters in even steps from the natural start on.
+    pub(super) fn even_parameters(&self, count: usize) -> Vec<f64> {
+        (0..count).map(|k| self.start + k as f64 / count as f64).collect()
+    }
+}
+
+/// A coarse match and its cost.
+#[derive(Debug, Clone)]
+pub(super) struct CoarseMatch {
+    /// From the first curve to the second.
+    pub(super) map: CyclicMap,
+    /// The elastic cost.
+    pub(super) cost: f32,
+}
+
+impl CoarseMatch {
+    /// The match along `path`.
+    pub(super) fn from_path(table: &MismatchTable, path: &Path) -> Self {
+        let inner = &path.nodes[..path.nodes.len() - 1];
+        Self {
+            map: CyclicMap::through(
+                inner.iter().map(|(i, _)| table.row_parameter(*i)).collect(),
+                inner.iter().map(|(_, j)| table.column_parameter(*j)).collect(),
+            ),
+            cost: path.cost,
+        }
+    }
+}
+
+/// The best coarse matches of `first` to `second` with clearly different starts, cheapest first; at least one.
+pub(super) fn coarse_matches(first: &Form, second: &Form, samples: usize, most: usize) -> Vec<CoarseMatch> {
+    let (rows, columns) = (first.even_parameters(samples), second.even_parameters(samples));
+    let table = MismatchTable::new(&first.curve, rows, &second.curve, columns, Vec::new());
+    let apart = ((APART * samples as f64).round() as usize).max(1);
+    distinct_minima(&path_from_each_start(&table), apart, most)
+        .into_iter()
+        .map(|path| CoarseMatch::from_path(&table, &path))
+        .collect()
+}

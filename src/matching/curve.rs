@@ -1,0 +1,107 @@
+//! A ring prepared for matching: place and size taken out, position and turning cheap to ask for.
+
+use crate::math::{Point, angle};
+use crate::outline::{ArcLength, Ring, RingError};
+
+/// Half-windows over which turning is measured, as fractions of the perimeter, with the weight each has in the match.
+///
+/// Fine detail is the signal: on silhouettes warped by known maps, smoothed outlines match worse. The longest window
+/// counts half; it is what holds a match in place when the outline is noisy.
+pub(super) const WINDOWS: [(f64, f32); 4] = [(0.003, 1.0), (0.006, 1.0), (0.012, 1.0), (0.025, 0.5)];
+
+/// Even samples that stand in for the ring when positions are asked for: a twentieth of a percent of the perimeter.
+const FINE_SAMPLES: usize = 2048;
+
+/// The turning of a curve at a point, in radians, for each of [`WINDOWS`], times its weight.
+pub(super) type Turning = [f32; WINDOWS.len()];
+
+/// A closed curve of length 1 around the origin.
+#[derive(Debug, Clone)]
+pub(super) struct Curve {
+    arc: ArcLength,
+    fine: Vec<Point>,
+}
+
+impl Curve {
+    /// `ring` scaled to length 1, the centroid of its length moved to the origin.
+    pub(super) fn new(ring: &Ring) -> Result<Self, RingError> {
+        let perimeter = ring.perimeter();
+        let mut centre = Point::zeros();
+        for (a, b) in ring.edges() {
+            centre += (a + b) * (0.5 * (b - a).norm() / perimeter);
+        }
+        let arc = ArcLength::new(&ring.map(|p| (p - centre) / perimeter)?);
+        let fine = (0..FINE_SAMPLES)
+            .map(|k| arc.at(k as f64 / FINE_SAMPLES as f64))
+            .collect();
+        Ok(Self { arc, fine })
+    }
+
+    /// The curve seen in a mirror, run so that its area keeps its sign: its parameter `t` is this one's `1 - t`.
+    pub(super) fn mirrored(ring: &Ring) -> Result<Self, RingError> {
+        Self::new(&ring.map(|p| Point::new(-p.x, p.y))?.reversed())
+    }
+
+    /// The point at parameter `t`.
+    pub(super) fn at(&self, t: f64) -> Point {
+        let (index, along) = fine_position(t);
+        let (a, b) = (self.fine[index], self.fine[(index + 1) % FINE_SAMPLES]);
+        a + (b - a) * along
+    }
+
+    /// The turning at parameter `t`: the angle between the chords to the points a window behind and ahead.
+    pub(super) fn turning(&self, t: f64) -> Turning {
+        let here = self.arc.at(t);
+        WINDOWS.map(|(window, weight)| {
+            let (behind, ahead) = (self.arc.at(t - window), self.arc.at(t + window));
+            weight * angle::between(here - behind, ahead - here) as f32
+        })
+    }
+
+    /// The direction of the curve at `t`, over the length of the finest window.
+    pub(super) fn tangent(&self, t: f64) -> Point {
+        self.arc.at(t + WINDOWS[0].0) - self.arc.at(t - WINDOWS[0].0)
+    }
+
+    /// The parameter, in `[t - reach, t + reach]`, of the point nearest to `p`; not wrapped.
+    pub(super) fn nearest_within(&self, p: Point, t: f64, reach: f64) -> f64 {
+        let count = FINE_SAMPLES as f64;
+        let (first, last) = (((t - reach) * count).floor() as i64, ((t + reach) * count).ceil() as i64);
+        let mut best = (f64::INFINITY, t);
+        for k in first..last {
+            let index = k.rem_euclid(FINE_SAMPLES as i64) as usize;
+            let (along, distance) = crate::math::point::nearest_on_segment(
+                p,
+                self.fine[index],
+                self.fine[(index + 1) % FINE_SAMPLES],
+            );
+            if distance < best.0 {
+                best = (distance, (k as f64 + along) / count);
+            }
+        }
+        best.1.clamp(t - reach, t + reach)
+    }
+}
+
+/// The fine sample before `t`, and how far `t` is towards the next.
+fn fine_position(t: f64) -> (usize, f64) {
+    let position = t.rem_euclid(1.0) * FINE_SAMPLES as f64;
+    let index = (position as usize).min(FINE_SAMPLES - 1);
+    (index, position - index as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_square_turns_by_a_quarter_at_its_corners() {
+        let ring = Ring::new([[5.0, 5.0], [9.0, 5.0], [9.0, 9.0], [5.0, 9.0]].map(Point::from)).expect("a ring");
+        let curve = Curve::new(&ring).expect("a curve");
+        assert!((curve.at(0.0) - Point::new(-0.125, -0.125)).norm() < 1e-12);
+        assert!((curve.turning(0.25)[0] - std::f32::consts::FRAC_PI_2).abs() < 1e-5);
+        assert!(curve.turning(0.125)[0].abs() < 1e-6);
+        assert!((curve.nearest_within(Point::new(0.05, -0.3), 0.1, 0.2) - 0.175).abs() < 1e-9);
+        assert_eq!(curve.nearest_within(Point::new(0.3, -0.3), 0.1, 0.05), 0.1 + 0.05);
+    }
+}
