@@ -20,6 +20,8 @@ const TURNING_COST: f32 = 2.5;
 const STEPS: [(usize, usize); 9] = [(1, 1), (1, 2), (2, 1), (2, 3), (3, 2), (1, 3), (3, 1), (1, 4), (4, 1)];
 /// The largest ratio in [`STEPS`].
 const LARGEST_SLOPE: usize = 4;
+/// Turns of columns that a path may lie in: it starts in the first or early in the second and runs for one.
+const TURNS: usize = 3;
 
 /// Two sampled curves and how much their samples differ.
 #[derive(Debug, Clone)]
@@ -28,7 +30,7 @@ pub(super) struct MismatchTable {
     rows: Vec<f64>,
     /// Parameters of the second curve's samples, likewise.
     columns: Vec<f64>,
-    /// Mismatch by row and column, in cost per unit length.
+    /// Mismatch by row and column, in cost per unit length; each row is repeated for [`TURNS`] turns of columns.
     values: Vec<f32>,
     /// Rows that are matched to the column of the same number.
     forced: Vec<usize>,
@@ -40,11 +42,15 @@ impl MismatchTable {
     pub(super) fn new(first: &Curve, rows: Vec<f64>, second: &Curve, columns: Vec<f64>, forced: Vec<usize>) -> Self {
         let row_turning: Vec<Turning> = rows.iter().map(|t| first.turning(*t)).collect();
         let column_turning: Vec<Turning> = columns.iter().map(|t| second.turning(*t)).collect();
-        let mut values = Vec::with_capacity(rows.len() * columns.len());
+        let mut values = Vec::with_capacity(TURNS * rows.len() * columns.len());
         for a in &row_turning {
+            let begin = values.len();
             for b in &column_turning {
                 let difference: f32 = a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum();
                 values.push(TURNING_COST * difference);
+            }
+            for _ in 1..TURNS {
+                values.extend_from_within(begin..begin + columns.len());
             }
         }
         Self {
@@ -59,9 +65,12 @@ impl MismatchTable {
     pub(super) fn drawn_to(mut self, expected: &[Point], second: &Curve, cost_per_distance: f32) -> Self {
         let points: Vec<Point> = self.columns.iter().map(|t| second.at(*t)).collect();
         for (row, target) in expected.iter().enumerate() {
-            let start = row * self.columns.len();
-            for (value, p) in self.values[start..].iter_mut().zip(&points) {
-                *value += cost_per_distance * (target - p).norm() as f32;
+            let width = TURNS * points.len();
+            let values = &mut self.values[row * width..(row + 1) * width];
+            for turn in values.chunks_exact_mut(points.len()) {
+                for (value, p) in turn.iter_mut().zip(&points) {
+                    *value += cost_per_distance * (target - p).norm() as f32;
+                }
             }
         }
         self
@@ -106,9 +115,11 @@ impl MismatchTable {
         band
     }
 
-    fn mismatch(&self, row: usize, column: usize) -> f32 {
-        let (rows, columns) = (self.row_count(), self.column_count());
-        self.values[(row % rows) * columns + column % columns]
+    /// The mismatches of a row, counted cyclically, by column.
+    fn mismatches(&self, row: usize) -> &[f32] {
+        let width = TURNS * self.column_count();
+        let begin = (row % self.row_count()) * width;
+        &self.values[begin..begin + width]
     }
 }
 
@@ -149,56 +160,62 @@ impl Path {
 
 /// The cheapest path from `(0, start)` to `(#rows, start + #columns)` within `band`, or `None` if there is none.
 ///
-/// Cost O(area of the band).
+/// Cost O(area of the band). Each kind of step is tried for a whole row at once, which the compiler turns into vector
+/// instructions.
 pub(super) fn cheapest_path(table: &MismatchTable, start: usize, band: &[(usize, usize)]) -> Option<Path> {
     let (rows, columns) = (table.row_count(), table.column_count());
+    let largest_column = TURNS * columns - 1;
+    let within = |i: usize, j: usize| band[i].0 <= j && j <= band[i].1.min(largest_column);
+    if !within(0, start) || !within(rows, start + columns) {
+        return None;
+    }
     let mut offsets = Vec::with_capacity(rows + 1);
     let mut total = 0;
     for (low, high) in band {
         offsets.push(total);
-        total += (high + 1).saturating_sub(*low);
+        total += (high.min(&largest_column) + 1).saturating_sub(*low);
     }
-    let within = |i: usize, j: usize| band[i].0 <= j && j <= band[i].1;
-    if !within(0, start) || !within(rows, start + columns) {
-        return None;
-    }
+    offsets.push(total);
     let mut cost = vec![f32::INFINITY; total];
-    let mut step_to = vec![0_u8; total];
+    let mut step_to = vec![0_u32; total];
     cost[offsets[0] + start - band[0].0] = 0.0;
-    let row_lengths = step_lengths(|k| table.row_parameter(k), rows);
-    let column_lengths = step_lengths(|k| table.column_parameter(k), columns);
+    let row_lengths = step_lengths(|k| table.row_parameter(k), rows, 1);
+    let column_lengths = step_lengths(|k| table.column_parameter(k), columns, TURNS);
 
     let mut forced = table.forced.iter().copied().peekable();
     // A step may not jump over a row that is forced.
     let mut earliest = 0;
     for i in 1..=rows {
-        let (low, high) = band[i];
-        for j in low..=high {
-            let here = table.mismatch(i, j);
-            let mut best = (f32::INFINITY, 0);
-            for (index, &(a, b)) in STEPS.iter().enumerate() {
-                if i < earliest + a || j < b || !within(i - a, j - b) {
-                    continue;
-                }
-                let before = cost[offsets[i - a] + j - b - band[i - a].0];
-                if before >= best.0 {
-                    continue;
-                }
-                // The mismatch along the step: at its end, and at the nodes nearest to its inner even divisions.
-                let divisions = a.max(b);
-                let mut mismatch = here;
-                for inner in 1..divisions {
-                    mismatch += table.mismatch(i - inner * a / divisions, j - inner * b / divisions);
-                }
-                let (ds1, ds2) = (row_lengths[a][i % rows], column_lengths[b][j % columns]);
-                let turning = mismatch / divisions as f32 * 0.5 * (ds1 + ds2);
-                let sum = before + turning + (ds1 - ds2).abs();
-                if sum < best.0 {
-                    best = (sum, index as u8);
-                }
+        let (done, rest) = cost.split_at_mut(offsets[i]);
+        let costs = &mut rest[..offsets[i + 1] - offsets[i]];
+        let chosen = &mut step_to[offsets[i]..offsets[i + 1]];
+        for (index, &(a, b)) in STEPS.iter().enumerate() {
+            if i < earliest + a {
+                continue;
             }
-            let at = offsets[i] + j - low;
-            (cost[at], step_to[at]) = best;
+            // The columns of this row that the step reaches from the row it comes from.
+            let (before_low, before_count) = (band[i - a].0, offsets[i - a + 1] - offsets[i - a]);
+            let first = band[i].0.max(before_low + b);
+            let end = (band[i].0 + costs.len()).min(before_low + before_count + b);
+            if first >= end {
+                continue;
+            }
+            let span = |slice: usize| first - slice..end - slice;
+            let before = &done[offsets[i - a]..][span(before_low + b)];
+            let ds1 = row_lengths[a][i % rows];
+            let ds2 = &column_lengths[b][span(0)];
+            let (costs, chosen) = (&mut costs[span(band[i].0)], &mut chosen[span(band[i].0)]);
+            // The mismatch along the step: at its end, and at the nodes nearest to its inner even divisions.
+            let divisions = a.max(b);
+            let at = |inner: usize| &table.mismatches(i - inner * a / divisions)[span(inner * b / divisions)];
+            let share = 0.5 / divisions as f32;
+            let step = index as u32;
+            match divisions {
+                1 => try_step(costs, chosen, before, ds1, ds2, share, step, [at(0)]),
+                2 => try_step(costs, chosen, before, ds1, ds2, share, step, [at(0), at(1)]),
+                3 => try_step(costs, chosen, before, ds1, ds2, share, step, [at(0), at(1), at(2)]),
+                _ => try_step(costs, chosen, before, ds1, ds2, share, step, [at(0), at(1), at(2), at(3)]),
+            }
         }
         if forced.peek() == Some(&i) {
             earliest = i;
@@ -214,7 +231,7 @@ pub(super) fn cheapest_path(table: &MismatchTable, start: usize, band: &[(usize,
     let mut nodes = vec![end];
     let mut node = end;
     while node.0 > 0 {
-        let (a, b) = STEPS[usize::from(step_to[at(node.0, node.1)])];
+        let (a, b) = STEPS[step_to[at(node.0, node.1)] as usize];
         node = (node.0 - a, node.1 - b);
         nodes.push(node);
     }
@@ -222,16 +239,41 @@ pub(super) fn cheapest_path(table: &MismatchTable, start: usize, band: &[(usize,
     Some(Path { nodes, cost: path_cost })
 }
 
+/// Lowers `costs` where coming by one kind of step is cheaper, and notes the step there. All slices run over the same
+/// columns.
+#[expect(clippy::too_many_arguments, reason = "the slices of one inner loop, which a struct would only rename")]
+fn try_step<const N: usize>(
+    costs: &mut [f32],
+    chosen: &mut [u32],
+    before: &[f32],
+    ds1: f32,
+    ds2: &[f32],
+    share: f32,
+    step: u32,
+    mismatches: [&[f32]; N],
+) {
+    let count = costs.len();
+    let (chosen, before, ds2) = (&mut chosen[..count], &before[..count], &ds2[..count]);
+    let mismatches = mismatches.map(|slice| &slice[..count]);
+    for k in 0..count {
+        let mismatch: f32 = mismatches.iter().map(|slice| slice[k]).sum();
+        let sum = before[k] + mismatch * share * (ds1 + ds2[k]) + (ds1 - ds2[k]).abs();
+        let better = sum < costs[k];
+        costs[k] = if better { sum } else { costs[k] };
+        chosen[k] = if better { step } else { chosen[k] };
+    }
+}
+
 /// The cost of a step over which the weighted turning differs by `turning_rad` and the lengths are `ds1` and `ds2`.
 pub(super) fn step_cost(turning_rad: f64, ds1: f64, ds2: f64) -> f64 {
     f64::from(TURNING_COST) * turning_rad * 0.5 * (ds1 + ds2) + (ds1 - ds2).abs()
 }
 
-/// Entry `[a][k]`: the length of the step of `a` samples that ends at sample `k`, counted cyclically.
-fn step_lengths(parameter: impl Fn(usize) -> f64, count: usize) -> [Vec<f32>; LARGEST_SLOPE + 1] {
+/// Entry `[a][k]`: the length of the step of `a` samples that ends at sample `k`, for some turns of samples.
+fn step_lengths(parameter: impl Fn(usize) -> f64, count: usize, turns: usize) -> [Vec<f32>; LARGEST_SLOPE + 1] {
     std::array::from_fn(|a| {
-        (0..count)
-            .map(|k| (parameter(k + count) - parameter(k + count - a.min(count))) as f32)
+        (0..turns * count)
+            .map(|k| (parameter(k + LARGEST_SLOPE * count) - parameter(k + LARGEST_SLOPE * count - a)) as f32)
             .collect()
     })
 }

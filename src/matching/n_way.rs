@@ -21,10 +21,8 @@ use super::pair::{PairMatch, Pin, Reference};
 use super::{Correspondence, MatchError, SalientPoint};
 use crate::outline::Ring;
 
-/// Samples of the coarse matches that choose the reference.
-const REFERENCE_SAMPLES: usize = 64;
-/// Samples of the coarse matches that look for mirrored poses.
-const MIRROR_SAMPLES: usize = 96;
+/// Samples of the coarse matches that choose the reference and look for mirrored poses.
+const OVERVIEW_SAMPLES: usize = 64;
 /// A pose looks mirrored if its reflection matches at less than this share of its own cost.
 const MIRROR_MARGIN: f32 = 0.75;
 
@@ -166,7 +164,7 @@ fn most_central(forms: &[Form]) -> usize {
     let costs: Vec<f32> = pairs
         .par_iter()
         .map(|(i, j)| {
-            let matches = coarse_matches(&forms[*i], &forms[*j], REFERENCE_SAMPLES, 1);
+            let matches = coarse_matches(&forms[*i], &forms[*j], OVERVIEW_SAMPLES, 1);
             matches.first().map_or(f32::INFINITY, |matched| matched.cost)
         })
         .collect();
@@ -180,7 +178,7 @@ fn most_central(forms: &[Form]) -> usize {
 
 fn looks_mirrored(reference: &Form, ring: &Ring, form: &Form) -> bool {
     let best = |other: &Form| {
-        let matches = coarse_matches(reference, other, MIRROR_SAMPLES, 1);
+        let matches = coarse_matches(reference, other, OVERVIEW_SAMPLES, 1);
         matches.first().map_or(f32::INFINITY, |matched| matched.cost)
     };
     Form::mirrored(ring).is_ok_and(|mirrored| best(&mirrored) < MIRROR_MARGIN * best(form))

@@ -327,12 +327,12 @@ fn rows_through(landmarks: &[f64]) -> Vec<f64> {
     rows
 }
 
-/// The columns within `reach` perimeters of `map`, moved far enough ahead that none is negative.
+/// The columns within `reach` perimeters of `map`, moved ahead by whole turns until none is negative.
 fn band_around(table: &MismatchTable, map: &CyclicMap, reach: f64) -> Band {
     let columns = table.column_count() as f64;
     let origin = table.column_parameter(0);
     let position = |row: usize| (map.at(table.row_parameter(row)) - origin) * columns;
-    let ahead = columns - (position(0) / columns).floor() * columns;
+    let ahead = ((reach - position(0) / columns).ceil() + 1e-9).floor() * columns;
     (0..=table.row_count())
         .map(|row| {
             let centre = position(row) + ahead;

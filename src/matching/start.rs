@@ -4,11 +4,15 @@
 //! cross, so that the path from a start between them is looked for between them only. (With steps longer than one
 //! sample, paths may cross without sharing a node; the envelopes include what a step jumps over, which leaves room.)
 //!
-//! Cost O(n^2 log n) for n samples.
+//! Cost O(n^2 log n) for n samples. Every second start is enough: the finer match tries its neighbours again.
 
 use super::elastic::{MismatchTable, Path, cheapest_path};
 
-/// The cheapest path from every start, by starting column; `None` where the band between its neighbours held none.
+/// How many columns apart the starts are that are tried.
+const SPACING: usize = 2;
+
+/// The cheapest path from every second start, by starting column; `None` in between, and where the band between the
+/// neighbours' paths held none.
 pub(super) fn path_from_each_start(table: &MismatchTable) -> Vec<Option<Path>> {
     let columns = table.column_count();
     let mut paths = vec![None; columns + 1];
@@ -20,7 +24,7 @@ pub(super) fn path_from_each_start(table: &MismatchTable) -> Vec<Option<Path>> {
 }
 
 fn between(table: &MismatchTable, low: usize, high: usize, paths: &mut [Option<Path>]) {
-    if high - low < 2 {
+    if high - low <= SPACING {
         return;
     }
     let middle = low + (high - low) / 2;
@@ -46,7 +50,7 @@ pub(super) fn distinct_minima(paths: &[Option<Path>], apart: usize, most: usize)
     let count = paths.len();
     let cost = |k: usize| paths[k % count].as_ref().map_or(f32::INFINITY, |path| path.cost);
     let mut minima: Vec<&Path> = (0..count)
-        .filter(|k| (1..=apart).all(|d| cost(*k) < cost(k + d) && cost(*k) <= cost(k + count - d)))
+        .filter(|k| (1..=apart).all(|d| cost(*k) <= cost(k + d) && cost(*k) < cost(k + count - d)))
         .filter_map(|k| paths[k].as_ref())
         .collect();
     minima.sort_by(|a, b| a.cost.total_cmp(&b.cost));
