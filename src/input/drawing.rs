@@ -45,6 +45,13 @@ pub enum InputNote {
         /// How many.
         count: usize,
     },
+    /// Elements of an SVG file that are not drawn.
+    NotDrawn {
+        /// What they are.
+        what: &'static str,
+        /// How many.
+        count: usize,
+    },
 }
 
 impl std::fmt::Display for InputNote {
@@ -62,6 +69,12 @@ impl std::fmt::Display for InputNote {
                 write!(f, "{count} pin-holes with an area of {area:.0} together are closed")
             }
             Self::HolesFilled { count } => write!(f, "{count} holes are filled, as asked"),
+            Self::NotDrawn { what, count } => {
+                write!(
+                    f,
+                    "{what} ({count} of them) cannot be drawn; convert to paths before export"
+                )
+            }
         }
     }
 }

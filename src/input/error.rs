@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::outline::OutlineError;
+use crate::outline::{OutlineError, RingError};
 
 /// Why a drawing cannot be used. Only [`InputError::Unreadable`] knows a path; whoever reads bytes adds the name.
 #[derive(Debug, thiserror::Error)]
@@ -81,6 +81,51 @@ pub enum InputError {
         /// Its centroid.
         y: f64,
     },
+    /// The file is no SVG document.
+    #[error("this is no SVG drawing: {reason}")]
+    NotSvg {
+        /// Why.
+        reason: String,
+    },
+    /// A number of an SVG file is not finite or too large.
+    #[error(
+        "line {line}: '{attribute}' of {element} holds the number {number}; coordinates must be finite and at most {limit:e}"
+    )]
+    BadNumber {
+        /// The element and its id.
+        element: String,
+        /// The attribute.
+        attribute: String,
+        /// Line of the file, from 1.
+        line: u32,
+        /// The number, as written.
+        number: String,
+        /// The largest that is read.
+        limit: f64,
+    },
+    /// No element of an SVG file has the id asked for.
+    #[error(
+        "there is no element with the id '{id}'; {}",
+        if known.is_empty() { "no element has an id".to_owned() } else { format!("there are: {}", known.join(", ")) }
+    )]
+    NoSuchElement {
+        /// The id.
+        id: String,
+        /// The first ids of the file.
+        known: Vec<String>,
+    },
+    /// Nothing that is drawn encloses an area.
+    #[error("nothing that is drawn encloses an area: draw a closed shape with a fill or a stroke")]
+    NoClosedShape,
+    /// The resolution of a picture is not positive.
+    #[error("the resolution is {pixels_per_unit} pixels a unit, but must be a positive number")]
+    BadResolution {
+        /// The value given.
+        pixels_per_unit: f64,
+    },
+    /// A contour is no closed polygon.
+    #[error("the outline cannot be used: {0}")]
+    Ring(#[from] RingError),
     /// The contour is no outline.
     #[error("the outline cannot be used: {0}")]
     Outline(#[from] OutlineError),

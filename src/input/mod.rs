@@ -1,6 +1,6 @@
 //! Drawings: a file's bytes in, an outline and its pixels out.
 //!
-//! [`read_bitmap`] is pure; [`open_bitmap`] is the one that touches the disk. What was left out of a drawing (loose
+//! [`read_bitmap`] and [`read_svg`] are pure; [`open_bitmap`] and [`open_svg`] are the ones that touch the disk. What was left out of a drawing (loose
 //! parts, specks, pin-holes) is told in its [`InputNote`]s; what cannot be used is an [`InputError`].
 
 mod bitmap;
@@ -10,8 +10,12 @@ mod drawing;
 mod error;
 mod iso_line;
 mod picture;
+mod svg;
+mod svg_numbers;
+mod svg_silhouette;
 
 pub use bitmap::{BitmapOptions, HoleRule, open_bitmap, read_bitmap};
 pub use drawing::{Drawing, InputNote};
 pub use error::InputError;
 pub use picture::Picture;
+pub use svg::{SvgOptions, open_svg, read_svg};

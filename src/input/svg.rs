@@ -1,0 +1,249 @@
+//! SVG: the outline of what is drawn, and its pixels.
+//!
+//! Bytes of an SVG file -> [`Drawing`].
+//!
+//! 1. Refuse what is compressed, too long, or holds numbers beyond any drawing (module `svg_numbers`).
+//! 2. Parse with usvg: groups, transforms, `use`, CSS, shapes and strokes come out as paths. Nothing outside the file is
+//!    ever opened, whatever it refers to; embedded images and text are not drawn and are reported.
+//! 3. Unite what is drawn, in the element that is asked for or in all (module `svg_silhouette`).
+//! 4. Rasterise the same with resvg.
+//!
+//! Coordinates are the user units of the file's `viewBox`, at usvg's single precision (1e-7 of their size).
+
+use std::path::Path;
+
+use kurbo::Affine;
+use resvg::tiny_skia::{Pixmap, Transform};
+use usvg::roxmltree;
+
+use super::svg_numbers::check_numbers;
+use super::svg_silhouette::{affine, silhouette};
+use super::{Drawing, HoleRule, InputError, InputNote, Picture};
+use crate::math::{Point, point};
+use crate::outline::Outline;
+
+/// The longest file that is read, in bytes.
+const LONGEST_FILE: usize = 64 << 20;
+
+/// The longer side of the picture, in pixels, when no resolution is asked for.
+const USUAL_SIDE: f64 = 1024.0;
+
+/// The longest side of the picture, in pixels: a finer resolution is made coarser.
+const LARGEST_SIDE: f64 = 8192.0;
+
+/// Pixels around the outline.
+const MARGIN_PX: f64 = 2.0;
+
+/// How an SVG file is read.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SvgOptions {
+    /// The id of the element that is meant. Default: everything that is drawn.
+    pub element: Option<String>,
+    /// Pixels to a user unit of the picture, at most as many as make it 8192 pixels long. Default: as many as make the
+    /// longer side of the outline 1024 pixels long.
+    pub pixels_per_unit: Option<f64>,
+    /// What becomes of holes. Default: kept.
+    pub holes: HoleRule,
+}
+
+/// Reads the drawing in the file at `path`; see [`read_svg`].
+///
+/// # Errors
+/// [`InputError::Unreadable`] with the path if it cannot be read, else as [`read_svg`].
+pub fn open_svg(path: &Path, options: &SvgOptions) -> Result<Drawing, InputError> {
+    let bytes = std::fs::read(path).map_err(|source| InputError::Unreadable {
+        path: path.to_owned(),
+        source,
+    })?;
+    read_svg(&bytes, options)
+}
+
+/// The drawing in the bytes of an SVG file: the outline of its largest part, and its pixels.
+///
+/// # Errors
+/// [`InputError`] if the bytes are no SVG, hold numbers that are not finite or too large, have no element with the id
+/// asked for, or draw no closed shape.
+pub fn read_svg(bytes: &[u8], options: &SvgOptions) -> Result<Drawing, InputError> {
+    if bytes.is_empty() {
+        return Err(InputError::EmptyFile);
+    }
+    if let Some(pixels_per_unit) = options.pixels_per_unit.filter(|&ppu| !(ppu > 0.0 && ppu.is_finite())) {
+        return Err(InputError::BadResolution { pixels_per_unit });
+    }
+    // A few kilobytes of gzip can hold gigabytes.
+    if bytes.starts_with(&[0x1f, 0x8b]) {
+        return Err(not_svg("it is compressed; save it as plain SVG"));
+    }
+    if bytes.len() > LONGEST_FILE {
+        return Err(not_svg("it is longer than 64 MiB"));
+    }
+    let text = std::str::from_utf8(bytes).map_err(|_| not_svg("it is not UTF-8 text"))?;
+    let parsing = roxmltree::ParsingOptions {
+        allow_dtd: true,
+        ..roxmltree::ParsingOptions::default()
+    };
+    let document = roxmltree::Document::parse_with_options(text, parsing).map_err(|error| not_svg(&error))?;
+    if document.root_element().tag_name().name() != "svg" {
+        return Err(not_svg("its root element is not 'svg'"));
+    }
+    check_numbers(&document)?;
+    let tree = usvg::Tree::from_xmltree(&document, &closed_options()).map_err(|error| not_svg(&error))?;
+
+    let to_user = user_units(&document, &tree);
+    let nodes: Vec<&usvg::Node> = match &options.element {
+        Some(id) => vec![find(tree.root(), id).ok_or_else(|| missing(id, &document))?],
+        None => tree.root().children().iter().collect(),
+    };
+    let (outline, mut notes) = silhouette(&nodes, to_user, options.holes)?;
+    note_undrawn(&document, &mut notes);
+    let picture = rasterise(&nodes, to_user, &outline, options.pixels_per_unit)?;
+    Ok(Drawing {
+        outline,
+        picture,
+        notes,
+    })
+}
+
+fn not_svg(reason: &(impl std::fmt::Display + ?Sized)) -> InputError {
+    InputError::NotSvg {
+        reason: reason.to_string(),
+    }
+}
+
+/// Options under which nothing but the bytes given is ever read.
+fn closed_options() -> usvg::Options<'static> {
+    usvg::Options {
+        resources_dir: None,
+        image_href_resolver: usvg::ImageHrefResolver {
+            resolve_data: Box::new(|_, _, _| None),
+            resolve_string: Box::new(|_, _| None),
+        },
+        ..usvg::Options::default()
+    }
+}
+
+fn find<'a>(group: &'a usvg::Group, id: &str) -> Option<&'a usvg::Node> {
+    group.children().iter().find_map(|node| {
+        if node.id() == id {
+            return Some(node);
+        }
+        match node {
+            usvg::Node::Group(inner) => find(inner, id),
+            _ => None,
+        }
+    })
+}
+
+/// Tells an id that is nowhere from one of something that is not drawn.
+fn missing(id: &str, document: &roxmltree::Document) -> InputError {
+    let ids: Vec<&str> = document.descendants().filter_map(|node| node.attribute("id")).collect();
+    if ids.contains(&id) {
+        return InputError::NoClosedShape;
+    }
+    InputError::NoSuchElement {
+        id: id.to_owned(),
+        known: ids.into_iter().take(12).map(str::to_owned).collect(),
+    }
+}
+
+fn note_undrawn(document: &roxmltree::Document, notes: &mut Vec<InputNote>) {
+    for (tag, what) in [("text", "text"), ("image", "embedded images")] {
+        let count = document
+            .descendants()
+            .filter(|node| node.tag_name().name() == tag)
+            .count();
+        if count > 0 {
+            notes.push(InputNote::NotDrawn { what, count });
+        }
+    }
+}
+
+/// From usvg's absolute coordinates, which are pixels of the viewport, back to the units of the `viewBox`.
+fn user_units(document: &roxmltree::Document, tree: &usvg::Tree) -> Affine {
+    let root = document.root_element();
+    let numbers: Vec<f64> = root
+        .attribute("viewBox")
+        .unwrap_or_default()
+        .split(|c: char| c == ',' || c.is_whitespace())
+        .filter(|part| !part.is_empty())
+        .map_while(|part| part.parse().ok())
+        .collect();
+    let [x, y, width, height] = numbers[..] else {
+        return Affine::IDENTITY;
+    };
+    if !(width > 0.0 && height > 0.0) {
+        return Affine::IDENTITY;
+    }
+    let size = (f64::from(tree.size().width()), f64::from(tree.size().height()));
+    let aspect = root.attribute("preserveAspectRatio").unwrap_or("xMidYMid meet");
+    let (mut scale_x, mut scale_y) = (size.0 / width, size.1 / height);
+    if !aspect.contains("none") {
+        let uniform = if aspect.contains("slice") {
+            scale_x.max(scale_y)
+        } else {
+            scale_x.min(scale_y)
+        };
+        (scale_x, scale_y) = (uniform, uniform);
+    }
+    let place = |room: f64, low: &str, high: &str| {
+        if aspect.contains("none") || aspect.contains(low) {
+            0.0
+        } else if aspect.contains(high) {
+            room
+        } else {
+            0.5 * room
+        }
+    };
+    let left = place(size.0 - width * scale_x, "xMin", "xMax");
+    let top = place(size.1 - height * scale_y, "YMin", "YMax");
+    Affine::new([scale_x, 0.0, 0.0, scale_y, left - x * scale_x, top - y * scale_y]).inverse()
+}
+
+/// The pixels of `nodes` around `outline`.
+fn rasterise(
+    nodes: &[&usvg::Node],
+    to_user: Affine,
+    outline: &Outline,
+    asked: Option<f64>,
+) -> Result<Picture, InputError> {
+    let (low, high) = point::bounding_box(outline.outer().points()).ok_or(InputError::NoClosedShape)?;
+    let longer = (high - low).max();
+    let finest = (LARGEST_SIDE - 2.0 * MARGIN_PX - 1.0) / longer;
+    let pixels_per_unit = asked.unwrap_or(USUAL_SIDE / longer).min(finest);
+    // Pixels keep to a grid through the origin, so that the same art gets the same pixels in every file.
+    let first = (low * pixels_per_unit).map(|c| (c - MARGIN_PX).floor());
+    let last = (high * pixels_per_unit).map(|c| (c + MARGIN_PX).ceil());
+    let (width, height) = ((last.x - first.x) as u32, (last.y - first.y) as u32);
+    let mut pixmap = Pixmap::new(width.max(1), height.max(1)).ok_or(InputError::NoClosedShape)?;
+    let to_pixels = Affine::translate((-first.x, -first.y)) * Affine::scale(pixels_per_unit) * to_user;
+    for node in nodes {
+        let Some(bbox) = node.abs_layer_bounding_box() else {
+            continue;
+        };
+        let parent = match node {
+            usvg::Node::Group(group) => affine(group.abs_transform()) * affine(group.transform()).inverse(),
+            other => affine(other.abs_transform()),
+        };
+        // The renderer first moves the node's box to the origin.
+        let undo = Affine::translate((f64::from(bbox.x()), f64::from(bbox.y())));
+        let [sx, ky, kx, sy, tx, ty] = (to_pixels * parent * undo).as_coeffs().map(|c| c as f32);
+        let transform = Transform::from_row(sx, ky, kx, sy, tx, ty);
+        // Nothing is drawn of a node without size.
+        let _ = resvg::render_node(node, transform, &mut pixmap.as_mut());
+    }
+    let pixels = pixmap
+        .data()
+        .chunks_exact(4)
+        .map(|p| [p[0], p[1], p[2], p[3]])
+        .collect();
+    Ok(Picture {
+        width: pixmap.width() as usize,
+        height: pixmap.height() as usize,
+        pixels,
+        origin: Point::new(first.x, first.y) / pixels_per_unit,
+        pixels_per_unit,
+    })
+}
+
+#[cfg(test)]
+mod tests;

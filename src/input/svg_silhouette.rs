@@ -1,0 +1,327 @@
+//! The silhouette of vector art: everything that is drawn, united.
+//!
+//! 1. Every fill is flattened and made a region by its own fill rule; every stroke is widened to a region first (joins,
+//!    caps and dashes as drawn). Groups with a clip path are cut by it.
+//! 2. All regions are united (i_overlay, on an integer grid of 2^-60 of the drawing, where decisions are exact).
+//! 3. Where the boundary meets itself in a point (a figure of eight, a hole that reaches the edge), a patch joins the two
+//!    sides, since an outline must not touch itself. Its half width is [`PATCH`].
+//! 4. The largest part is the outline.
+//!
+//! Masks and filters do not change the outline. Opacity does only where it is 0.
+
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::float::overlay::FloatOverlay;
+use kurbo::{Affine, BezPath, PathEl};
+
+use super::{HoleRule, InputError, InputNote};
+use crate::math::Point;
+use crate::outline::{Outline, Ring, RingError, simplicity};
+
+/// How far a flattened curve may be from the curve, as a fraction of the drawing's diagonal.
+const FLATNESS: f64 = 1e-4;
+
+/// Half the width of the patch put where an outline touches itself, as a fraction of the diagonal: just visible to the
+/// later stages, invisible to the eye.
+const PATCH: f64 = 5e-4;
+
+/// How many touching places are patched before the drawing is refused.
+const MOST_PATCHES: usize = 64;
+
+/// Holes and loose parts with less than this share of the outline's area are dirt.
+const DIRT_SHARE: f64 = 1e-4;
+
+/// The most dashes that a stroke is cut into; beyond, it counts as a full line.
+const MOST_DASHES: f64 = 10_000.0;
+
+/// Closed polygons, the inside to the left of each in the sense of positive area.
+type Region = Vec<Vec<[f64; 2]>>;
+
+/// The outline of everything drawn in `nodes`, in user units, and what it leaves out.
+pub(super) fn silhouette(
+    nodes: &[&usvg::Node],
+    to_user: Affine,
+    hole_rule: HoleRule,
+) -> Result<(Outline, Vec<InputNote>), InputError> {
+    let mut bounds: Option<kurbo::Rect> = None;
+    for node in nodes {
+        let bbox = node.abs_stroke_bounding_box();
+        let rect = kurbo::Rect::new(
+            f64::from(bbox.left()),
+            f64::from(bbox.top()),
+            f64::from(bbox.right()),
+            f64::from(bbox.bottom()),
+        );
+        let rect = to_user.transform_rect_bbox(rect);
+        bounds = Some(bounds.map_or(rect, |all| all.union(rect)));
+    }
+    let diagonal = bounds.map_or(0.0, |rect| rect.width().hypot(rect.height()));
+    // Written so that NaN fails too.
+    if !(diagonal > 0.0 && diagonal < 4.0 * Ring::LARGEST_COORDINATE) {
+        return Err(InputError::NoClosedShape);
+    }
+    let mut drawn = Region::new();
+    for node in nodes {
+        add_node(node, to_user, FLATNESS * diagonal, &mut drawn)?;
+    }
+    let mut parts = unite(&drawn, FillRule::NonZero);
+    for _ in 0..MOST_PATCHES {
+        let rings: Vec<Ring> = parts
+            .iter()
+            .flatten()
+            .filter_map(|polygon| ring(polygon).ok())
+            .collect();
+        let Some(meeting) = simplicity::first_meeting(&rings) else {
+            break;
+        };
+        let (size, at) = (PATCH * diagonal, meeting.place);
+        let mut patched: Region = parts.into_iter().flatten().collect();
+        patched.push(vec![
+            [at.x - size, at.y - size],
+            [at.x + size, at.y - size],
+            [at.x + size, at.y + size],
+            [at.x - size, at.y + size],
+        ]);
+        parts = unite(&patched, FillRule::NonZero);
+    }
+    largest_outline(&parts, hole_rule)
+}
+
+fn ring(polygon: &[[f64; 2]]) -> Result<Ring, RingError> {
+    Ring::new(polygon.iter().copied().map(Point::from))
+}
+
+/// The parts of the plane that `region` covers: per part its outer polygon, then its holes.
+fn unite(region: &Region, rule: FillRule) -> Vec<Region> {
+    FloatOverlay::<[f64; 2], i64>::from_subj(region).overlay(OverlayRule::Subject, rule)
+}
+
+fn area_and_centroid(polygon: &[[f64; 2]]) -> (f64, Point) {
+    let Some(&first) = polygon.first() else {
+        return (0.0, Point::zeros());
+    };
+    let origin = Point::from(first);
+    let (mut area, mut moment) = (0.0, Point::zeros());
+    for k in 0..polygon.len() {
+        let a = Point::from(polygon[k]) - origin;
+        let b = Point::from(polygon[(k + 1) % polygon.len()]) - origin;
+        let part = 0.5 * crate::math::point::cross(a, b);
+        area += part;
+        moment += (a + b) * (part / 3.0);
+    }
+    let centroid = if area == 0.0 { origin } else { origin + moment / area };
+    (area, centroid)
+}
+
+fn largest_outline(parts: &[Region], hole_rule: HoleRule) -> Result<(Outline, Vec<InputNote>), InputError> {
+    let measured: Vec<(f64, Point)> = parts
+        .iter()
+        .map(|part| {
+            let (outer, centroid) = part.first().map_or((0.0, Point::zeros()), |p| area_and_centroid(p));
+            let holes: f64 = part.iter().skip(1).map(|hole| area_and_centroid(hole).0.abs()).sum();
+            (outer.abs() - holes, centroid)
+        })
+        .collect();
+    let largest = (0..parts.len())
+        .max_by(|&a, &b| measured[a].0.total_cmp(&measured[b].0).then(b.cmp(&a)))
+        .ok_or(InputError::NoClosedShape)?;
+    let dirt = DIRT_SHARE * measured[largest].0;
+    let mut notes = Vec::new();
+    let (mut specks, mut speck_area) = (0, 0.0);
+    for (_, &(area, place)) in measured.iter().enumerate().filter(|(k, _)| *k != largest) {
+        if area < dirt {
+            (specks, speck_area) = (specks + 1, speck_area + area);
+        } else {
+            notes.push(InputNote::PartLeftOut { place, area });
+        }
+    }
+    if specks > 0 {
+        notes.push(InputNote::SpecksLeftOut {
+            count: specks,
+            area: speck_area,
+        });
+    }
+    let mut rings = parts[largest].iter().map(|polygon| {
+        let area = area_and_centroid(polygon).0.abs();
+        ring(polygon).map(|ring| (ring, area))
+    });
+    let (outer, _) = match rings.next() {
+        Some(Ok(outer)) => outer,
+        Some(Err(error)) => return Err(InputError::Ring(error)),
+        None => return Err(InputError::NoClosedShape),
+    };
+    let mut holes = Vec::new();
+    let (mut closed, mut closed_area) = (0, 0.0);
+    for ring in rings {
+        match ring {
+            Ok((ring, area)) if area >= dirt => holes.push(ring),
+            Ok((_, area)) => (closed, closed_area) = (closed + 1, closed_area + area),
+            // Fewer than three points bound nothing.
+            Err(_) => {}
+        }
+    }
+    if closed > 0 {
+        notes.push(InputNote::PinHolesClosed {
+            count: closed,
+            area: closed_area,
+        });
+    }
+    if hole_rule == HoleRule::Fill && !holes.is_empty() {
+        notes.push(InputNote::HolesFilled { count: holes.len() });
+        holes.clear();
+    }
+    Ok((Outline::new(outer, holes)?, notes))
+}
+
+fn add_node(node: &usvg::Node, to_user: Affine, tolerance: f64, drawn: &mut Region) -> Result<(), InputError> {
+    match node {
+        usvg::Node::Group(group) => add_group(group, to_user, tolerance, drawn),
+        usvg::Node::Path(path) => add_path(path, to_user, tolerance, drawn),
+        usvg::Node::Image(_) | usvg::Node::Text(_) => Ok(()),
+    }
+}
+
+fn add_group(group: &usvg::Group, to_user: Affine, tolerance: f64, drawn: &mut Region) -> Result<(), InputError> {
+    if group.opacity().get() == 0.0 {
+        return Ok(());
+    }
+    let mut inside = Region::new();
+    for child in group.children() {
+        add_node(child, to_user, tolerance, &mut inside)?;
+    }
+    if let Some(clip) = group.clip_path() {
+        let place = to_user * affine(group.abs_transform());
+        inside = cut(&inside, &clip_region(clip, place, tolerance)?);
+    }
+    drawn.append(&mut inside);
+    Ok(())
+}
+
+/// What a clip path lets through; `place` maps the coordinates of the clipped group to user units.
+fn clip_region(clip: &usvg::ClipPath, place: Affine, tolerance: f64) -> Result<Region, InputError> {
+    let mut region = Region::new();
+    let place = place * affine(clip.transform());
+    for child in clip.root().children() {
+        // The clip's own tree starts at an identity, so its absolute transforms are relative to the clip.
+        add_node(child, place, tolerance, &mut region)?;
+    }
+    match clip.clip_path() {
+        Some(outer) => Ok(cut(&region, &clip_region(outer, place, tolerance)?)),
+        None => Ok(region),
+    }
+}
+
+fn cut(region: &Region, by: &Region) -> Region {
+    FloatOverlay::<[f64; 2], i64>::from_subj_and_clip(region, by)
+        .overlay(OverlayRule::Intersect, FillRule::NonZero)
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+fn add_path(path: &usvg::Path, to_user: Affine, tolerance: f64, drawn: &mut Region) -> Result<(), InputError> {
+    if !path.is_visible() {
+        return Ok(());
+    }
+    let place = to_user * affine(path.abs_transform());
+    let curve = bezier(path.data());
+    if let Some(fill) = path.fill().filter(|fill| fill.opacity().get() > 0.0) {
+        let rule = match fill.rule() {
+            usvg::FillRule::NonZero => FillRule::NonZero,
+            usvg::FillRule::EvenOdd => FillRule::EvenOdd,
+        };
+        add_region(&curve, place, tolerance, rule, drawn)?;
+    }
+    if let Some(stroke) = path.stroke().filter(|stroke| stroke.opacity().get() > 0.0) {
+        // The stroke is widened before it is placed: a transform may squeeze it.
+        let [a, b, c, d, ..] = place.as_coeffs();
+        let scale = a.hypot(b).max(c.hypot(d));
+        if scale > 0.0 {
+            let local = tolerance / scale;
+            let widened = kurbo::stroke(
+                &curve,
+                &style(stroke, &curve, local),
+                &kurbo::StrokeOpts::default(),
+                local,
+            );
+            add_region(&widened, place, tolerance, FillRule::NonZero, drawn)?;
+        }
+    }
+    Ok(())
+}
+
+fn add_region(
+    curve: &BezPath,
+    place: Affine,
+    tolerance: f64,
+    rule: FillRule,
+    drawn: &mut Region,
+) -> Result<(), InputError> {
+    let mut polygons = Region::new();
+    kurbo::flatten(place * curve, tolerance, |element| match element {
+        PathEl::MoveTo(p) => polygons.push(vec![[p.x, p.y]]),
+        PathEl::LineTo(p) => {
+            if let Some(polygon) = polygons.last_mut() {
+                polygon.push([p.x, p.y]);
+            }
+        }
+        _ => {}
+    });
+    for [x, y] in polygons.iter().flatten() {
+        // Written so that NaN fails too.
+        if !(x.abs() <= Ring::LARGEST_COORDINATE && y.abs() <= Ring::LARGEST_COORDINATE) {
+            return Err(InputError::Ring(RingError::BadCoordinate { index: 0, x: *x, y: *y }));
+        }
+    }
+    drawn.extend(unite(&polygons, rule).into_iter().flatten());
+    Ok(())
+}
+
+fn style(stroke: &usvg::Stroke, curve: &BezPath, tolerance: f64) -> kurbo::Stroke {
+    let cap = match stroke.linecap() {
+        usvg::LineCap::Butt => kurbo::Cap::Butt,
+        usvg::LineCap::Round => kurbo::Cap::Round,
+        usvg::LineCap::Square => kurbo::Cap::Square,
+    };
+    let join = match stroke.linejoin() {
+        usvg::LineJoin::Miter | usvg::LineJoin::MiterClip => kurbo::Join::Miter,
+        usvg::LineJoin::Round => kurbo::Join::Round,
+        usvg::LineJoin::Bevel => kurbo::Join::Bevel,
+    };
+    let style = kurbo::Stroke::new(f64::from(stroke.width().get()))
+        .with_caps(cap)
+        .with_join(join)
+        .with_miter_limit(f64::from(stroke.miterlimit().get()));
+    let Some(dashes) = stroke.dasharray() else {
+        return style;
+    };
+    let dashes: Vec<f64> = dashes.iter().copied().map(f64::from).collect();
+    let period: f64 = dashes.iter().sum();
+    let length: f64 = curve
+        .segments()
+        .map(|segment| kurbo::ParamCurveArclen::arclen(&segment, tolerance))
+        .sum();
+    if length * dashes.len() as f64 <= MOST_DASHES * period {
+        style.with_dashes(f64::from(stroke.dashoffset()), dashes)
+    } else {
+        style
+    }
+}
+
+pub(super) fn affine(t: usvg::Transform) -> Affine {
+    Affine::new([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from))
+}
+
+fn bezier(path: &usvg::tiny_skia_path::Path) -> BezPath {
+    use usvg::tiny_skia_path::PathSegment;
+    let p = |p: usvg::tiny_skia_path::Point| kurbo::Point::new(f64::from(p.x), f64::from(p.y));
+    path.segments()
+        .map(|segment| match segment {
+            PathSegment::MoveTo(a) => PathEl::MoveTo(p(a)),
+            PathSegment::LineTo(a) => PathEl::LineTo(p(a)),
+            PathSegment::QuadTo(a, b) => PathEl::QuadTo(p(a), p(b)),
+            PathSegment::CubicTo(a, b, c) => PathEl::CurveTo(p(a), p(b), p(c)),
+            PathSegment::Close => PathEl::ClosePath,
+        })
+        .collect()
+}
