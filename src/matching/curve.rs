@@ -66,15 +66,15 @@ impl Curve {
     /// The parameter, in `[t - reach, t + reach]`, of the point nearest to `p`; not wrapped.
     pub(super) fn nearest_within(&self, p: Point, t: f64, reach: f64) -> f64 {
         let count = FINE_SAMPLES as f64;
-        let (first, last) = (((t - reach) * count).floor() as i64, ((t + reach) * count).ceil() as i64);
+        let (first, last) = (
+            ((t - reach) * count).floor() as i64,
+            ((t + reach) * count).ceil() as i64,
+        );
         let mut best = (f64::INFINITY, t);
         for k in first..last {
             let index = k.rem_euclid(FINE_SAMPLES as i64) as usize;
-            let (along, distance) = crate::math::point::nearest_on_segment(
-                p,
-                self.fine[index],
-                self.fine[(index + 1) % FINE_SAMPLES],
-            );
+            let (along, distance) =
+                crate::math::point::nearest_on_segment(p, self.fine[index], self.fine[(index + 1) % FINE_SAMPLES]);
             if distance < best.0 {
                 best = (distance, (k as f64 + along) / count);
             }

@@ -214,7 +214,16 @@ pub(super) fn cheapest_path(table: &MismatchTable, start: usize, band: &[(usize,
                 1 => try_step(costs, chosen, before, ds1, ds2, share, step, [at(0)]),
                 2 => try_step(costs, chosen, before, ds1, ds2, share, step, [at(0), at(1)]),
                 3 => try_step(costs, chosen, before, ds1, ds2, share, step, [at(0), at(1), at(2)]),
-                _ => try_step(costs, chosen, before, ds1, ds2, share, step, [at(0), at(1), at(2), at(3)]),
+                _ => try_step(
+                    costs,
+                    chosen,
+                    before,
+                    ds1,
+                    ds2,
+                    share,
+                    step,
+                    [at(0), at(1), at(2), at(3)],
+                ),
             }
         }
         if forced.peek() == Some(&i) {
@@ -241,7 +250,10 @@ pub(super) fn cheapest_path(table: &MismatchTable, start: usize, band: &[(usize,
 
 /// Lowers `costs` where coming by one kind of step is cheaper, and notes the step there. All slices run over the same
 /// columns.
-#[expect(clippy::too_many_arguments, reason = "the slices of one inner loop, which a struct would only rename")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the slices of one inner loop, which a struct would only rename"
+)]
 fn try_step<const N: usize>(
     costs: &mut [f32],
     chosen: &mut [u32],

@@ -135,7 +135,11 @@ fn curvature_extrema(points: &[Point]) -> Vec<(usize, f64)> {
         .collect();
     (0..count)
         .filter(|k| {
-            let (before, here, after) = (curvature[(k + count - 1) % count], curvature[*k], curvature[(k + 1) % count]);
+            let (before, here, after) = (
+                curvature[(k + count - 1) % count],
+                curvature[*k],
+                curvature[(k + 1) % count],
+            );
             let sign = here.signum();
             here.abs() >= LEAST_CURVATURE && sign * here > sign * before && sign * here >= sign * after
         })
@@ -151,8 +155,18 @@ mod tests {
     #[test]
     fn a_cross_has_eight_tips_and_four_notches() {
         let corners = [
-            [1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [3.0, 1.0], [3.0, 2.0], [2.0, 2.0],
-            [2.0, 3.0], [1.0, 3.0], [1.0, 2.0], [0.0, 2.0], [0.0, 1.0], [1.0, 1.0],
+            [1.0, 0.0],
+            [2.0, 0.0],
+            [2.0, 1.0],
+            [3.0, 1.0],
+            [3.0, 2.0],
+            [2.0, 2.0],
+            [2.0, 3.0],
+            [1.0, 3.0],
+            [1.0, 2.0],
+            [0.0, 2.0],
+            [0.0, 1.0],
+            [1.0, 1.0],
         ];
         let ring = Ring::new(corners.map(Point::from)).expect("a ring");
         let points = salient_points(&Curve::new(&ring).expect("a curve"));

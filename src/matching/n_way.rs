@@ -187,14 +187,20 @@ fn looks_mirrored(reference: &Form, ring: &Ring, form: &Form) -> bool {
 /// Gives the reference every landmark that it lacks: the mean of where the matches of the poses that have it put it.
 fn carry_to_reference(forms: &[Form], reference: usize, landmarks: &mut [Landmark]) -> Result<(), MatchError> {
     while let Some(missing) = landmarks.iter().position(|l| l.at[reference].is_none()) {
-        let having: Vec<usize> = (0..forms.len()).filter(|pose| landmarks[missing].at[*pose].is_some()).collect();
+        let having: Vec<usize> = (0..forms.len())
+            .filter(|pose| landmarks[missing].at[*pose].is_some())
+            .collect();
         // A landmark of one pose, or of none, ties nothing together.
         if having.len() < 2 {
             landmarks[missing].at.fill(None);
             landmarks[missing].at[reference] = Some(f64::NAN);
             continue;
         }
-        let settled: Vec<Landmark> = landmarks.iter().filter(|l| l.at[reference].is_some_and(f64::is_finite)).cloned().collect();
+        let settled: Vec<Landmark> = landmarks
+            .iter()
+            .filter(|l| l.at[reference].is_some_and(f64::is_finite))
+            .cloned()
+            .collect();
         let (frame, matches) = match_some(forms, reference, &settled, &having)?;
         let mut first = None;
         let mut offset = 0.0;
@@ -251,7 +257,9 @@ fn match_some(
                 })
                 .collect();
             pins.sort_by_key(|pin| pin.row);
-            let mut matched = frame.match_pose(&forms[pose], &pins).ok_or(MatchError::NoMatch { pose })?;
+            let mut matched = frame
+                .match_pose(&forms[pose], &pins)
+                .ok_or(MatchError::NoMatch { pose })?;
             for pin in &pins {
                 // Exactly as given, not as rounded on the way.
                 let turns = (matched.parameters[pin.row] - pin.parameter).round();

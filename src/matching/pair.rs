@@ -164,7 +164,10 @@ impl<'a> Reference<'a> {
         }
         let every_second = |values: Vec<f64>| values.into_iter().step_by(ELASTIC_STRIDE).collect::<Vec<f64>>();
         let rows = every_second((0..count).map(row_at).collect());
-        let forced = pins[1..].iter().map(|pin| (pin.row - first_row) / ELASTIC_STRIDE).collect();
+        let forced = pins[1..]
+            .iter()
+            .map(|pin| (pin.row - first_row) / ELASTIC_STRIDE)
+            .collect();
         MismatchTable::new(&self.form.curve, rows, &pose.curve, every_second(columns), forced)
     }
 
@@ -193,7 +196,11 @@ impl<'a> Reference<'a> {
         } else {
             table.reachable(0)
         };
-        let middle = if pins.is_empty() { (band[0].0 + band[0].1) / 2 } else { 0 };
+        let middle = if pins.is_empty() {
+            (band[0].0 + band[0].1) / 2
+        } else {
+            0
+        };
         (middle.saturating_sub(starts)..=middle + starts)
             .filter_map(|start| cheapest_path(&table, start, &band))
             .reduce(|a, b| if b.cost < a.cost { b } else { a })
@@ -243,7 +250,9 @@ impl<'a> Reference<'a> {
                 for (t, p) in parameters.iter_mut().zip(expected) {
                     *t = pose.curve.nearest_within(p, *t, REFIT_REACH / level as f64);
                 }
-                settle(&mut parameters, pins, |values, pinned| make_increasing(values, pinned, least_step));
+                settle(&mut parameters, pins, |values, pinned| {
+                    make_increasing(values, pinned, least_step)
+                });
             }
         }
         settle(&mut parameters, pins, |values, pinned| {
@@ -279,7 +288,11 @@ impl<'a> Reference<'a> {
 fn settle(parameters: &mut [f64], pins: &[Pin], change: impl Fn(&mut [f64], &[usize])) {
     let count = parameters.len();
     let step = |k: usize| {
-        let next = if k + 1 == count { parameters[0] + 1.0 } else { parameters[k + 1] };
+        let next = if k + 1 == count {
+            parameters[0] + 1.0
+        } else {
+            parameters[k + 1]
+        };
         next - parameters[k]
     };
     let cut = match pins.first() {

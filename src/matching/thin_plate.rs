@@ -62,13 +62,20 @@ impl ThinPlate {
         let coefficients = self.factors[level].solve(&right)?;
         let carried = &self.basis * coefficients;
         let points: Vec<Point> = carried.row_iter().map(|row| Point::new(row[0], row[1])).collect();
-        points.iter().all(|p| crate::math::point::is_finite(*p)).then_some(points)
+        points
+            .iter()
+            .all(|p| crate::math::point::is_finite(*p))
+            .then_some(points)
     }
 }
 
 fn kernel(a: Point, b: Point) -> f64 {
     let squared = (a - b).norm_squared();
-    if squared > 0.0 { 0.5 * squared * squared.ln() } else { 0.0 }
+    if squared > 0.0 {
+        0.5 * squared * squared.ln()
+    } else {
+        0.0
+    }
 }
 
 fn affine(p: Point, column: usize) -> f64 {
@@ -86,7 +93,9 @@ mod tests {
 
     #[test]
     fn an_affine_map_is_reproduced_at_any_stiffness() {
-        let controls: Vec<Point> = (0..20).map(|k| Point::new((k * k % 7) as f64, (k % 5) as f64) * 0.1).collect();
+        let controls: Vec<Point> = (0..20)
+            .map(|k| Point::new((k * k % 7) as f64, (k % 5) as f64) * 0.1)
+            .collect();
         let places = [Point::new(0.33, 0.1), Point::new(-1.0, 2.0)];
         let map = |p: Point| Matrix::new(1.5, -0.4, 0.2, 0.8) * p + Point::new(0.3, 0.2);
         let plate = ThinPlate::new(&controls, &places, &[1e-3, 10.0]);
@@ -101,7 +110,9 @@ mod tests {
 
     #[test]
     fn a_soft_spline_interpolates() {
-        let controls: Vec<Point> = (0..12).map(|k| crate::math::rotation(k as f64 * 0.5) * Point::new(0.2, 0.0)).collect();
+        let controls: Vec<Point> = (0..12)
+            .map(|k| crate::math::rotation(k as f64 * 0.5) * Point::new(0.2, 0.0))
+            .collect();
         let targets: Vec<Point> = controls.iter().map(|p| p + Point::new(p.y * p.y, p.x * p.y)).collect();
         let plate = ThinPlate::new(&controls, &controls, &[1e-12]);
         let carried = plate.carry(0, &targets).expect("not on a line");

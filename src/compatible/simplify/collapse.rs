@@ -19,7 +19,7 @@ use super::tuples::{Tuple, TupleRing};
 use crate::math::{Point, point, predicate};
 use crate::outline::{ArcLength, Ring};
 
-/// A vertex counts as straight if it is convex by less than this, as a fraction of the pose's diagonal: points that
+/// A vertex counts as straight if it is convex by less than this, as a fraction of the pose's size: points that
 /// were interpolated on an edge lie off it by rounding, a few 1e-16.
 const STRAIGHT: f64 = 1e-14;
 
@@ -73,7 +73,8 @@ impl OriginalRing {
 #[derive(Debug)]
 pub(super) struct PoseOriginal {
     pub(super) rings: Vec<OriginalRing>,
-    pub(super) diagonal: f64,
+    /// The length that deviations are relative to.
+    pub(super) size: f64,
 }
 
 /// A way to merge `b` and `c` in one pose.
@@ -112,7 +113,7 @@ impl Ord for Queued {
 #[derive(Debug)]
 pub(super) struct Collapser<'a> {
     originals: &'a [PoseOriginal],
-    /// Largest deviation, as a fraction of each pose's diagonal.
+    /// Largest deviation, as a fraction of each pose's size.
     tolerance: f64,
     tuples: Vec<Tuple>,
     ring_of: Vec<usize>,
@@ -241,7 +242,7 @@ impl<'a> Collapser<'a> {
                     merge.parameter = self.tuples[pinned].parameters[pose];
                 }
             }
-            let relative = merge.deviation / self.originals[pose].diagonal;
+            let relative = merge.deviation / self.originals[pose].size;
             worst = worst.max(relative * relative);
             sum += relative * relative;
             merges.push(merge);
@@ -258,8 +259,8 @@ impl<'a> Collapser<'a> {
         let d = self.next[c];
         let [pa, pb, pc, pd] = [a, b, c, d].map(|v| self.point(pose, v));
         let [ta, tb, tc, td] = [a, b, c, d].map(|v| self.tuples[v].parameters[pose]);
-        let limit = self.tolerance * original.diagonal;
-        let straight = STRAIGHT * original.diagonal;
+        let limit = self.tolerance * original.size;
+        let straight = STRAIGHT * original.size;
         let can_drop = |before: Point, vertex: Point, after: Point| {
             !predicate::is_positive(before, vertex, after)
                 || point::cross(vertex - before, after - before) <= straight * (after - before).norm()

@@ -15,6 +15,9 @@
 //! removes vertices; here each pose has its own kind of collapse for the same tuple, without which most tuples are
 //! stuck (convex in one pose, reflex in another). The first step is ours: it makes several times fewer tuples.
 //!
+//! A long thin shape may have a diagonal of a hundred of its widths; of such a shape the tolerance is taken relative to
+//! 15 mean half-widths (area over perimeter) where that is less than the diagonal.
+//!
 //! Guarantee: each polygon is simple and contains its outline but for rounding of merged vertices (about 1e-14 of the
 //! diagonal); landmark tuples survive. Cost O(n log n) in the number of outline points n, for outlines whose edges are
 //! of similar length. Limit: the count of vertices follows from the tolerance, it cannot be asked for.
@@ -36,6 +39,7 @@ use crate::outline::{Outline, OutlineError, Ring, RingError};
 #[non_exhaustive]
 pub struct SimplifyOptions {
     /// The deviation allowed between an outline and its polygon, as a fraction of the pose's diagonal. Default 0.02.
+    /// Shapes that are thin all over are held to their width instead: see the module's documentation.
     pub tolerance: f64,
 }
 
@@ -119,6 +123,16 @@ const PRELIMINARY_SHARE: f64 = 0.05;
 /// well below any tolerance in use.
 const MERGE_DISTANCE: f64 = 1e-3;
 
+/// A shape is thin if its diagonal exceeds this many of its mean half-widths; its deviation is then measured against
+/// those instead, or the polygon would be half as wide again as the shape. With the default tolerance it may deviate by
+/// 0.3 half-widths.
+const THIN_SHAPE: f64 = 15.0;
+
+/// Area over perimeter: half the width of a long strip, a quarter of the diameter of a disc.
+fn mean_half_width(outline: &Outline) -> f64 {
+    outline.area() / outline.rings().iter().map(Ring::perimeter).sum::<f64>()
+}
+
 /// Simplifies N outlines to N polygons with corresponding vertices that enclose them.
 ///
 /// `correspondences` holds one correspondence a ring, outer ring first; `landmarks` the boundary landmarks of the outer
@@ -146,7 +160,7 @@ pub fn simplify(
         .iter()
         .map(|outline| PoseOriginal {
             rings: outline.rings().iter().map(OriginalRing::new).collect(),
-            diagonal: outline.diagonal(),
+            size: outline.diagonal().min(THIN_SHAPE * mean_half_width(outline)),
         })
         .collect();
     let singles = simplify_alone(outlines, &originals, landmarks, PRELIMINARY_SHARE * options.tolerance);
