@@ -8,6 +8,7 @@
 
 mod camera;
 pub mod coverage;
+pub mod diagram;
 mod frame;
 mod nearest_seed;
 mod painter;

@@ -97,6 +97,12 @@ impl Animation {
         &self.path.keys
     }
 
+    /// Whether it is a loop.
+    #[must_use]
+    pub fn is_loop(&self) -> bool {
+        self.path.period.is_some()
+    }
+
     /// How long it plays, in seconds: from the first key to the last, or once around the loop.
     #[must_use]
     pub fn duration(&self) -> f64 {

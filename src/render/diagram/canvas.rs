@@ -1,0 +1,134 @@
+//! Lines, dots and words on a white sheet.
+
+use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, Transform};
+
+use super::stroke_font;
+use crate::math::{Point, point};
+use crate::render::Frame;
+
+/// A white sheet to draw on.
+pub(super) struct Canvas {
+    pixmap: Pixmap,
+}
+
+impl Canvas {
+    pub(super) fn new(width: u32, height: u32) -> Option<Self> {
+        let mut pixmap = Pixmap::new(width, height)?;
+        pixmap.fill(Color::WHITE);
+        Some(Self { pixmap })
+    }
+
+    /// A line through points, closed if asked to be by repeating the first.
+    pub(super) fn line(&mut self, points: &[Point], width: f64, colour: Color) {
+        let mut builder = PathBuilder::new();
+        for (k, p) in points.iter().filter(|p| point::is_finite(**p)).enumerate() {
+            if k == 0 {
+                builder.move_to(p.x as f32, p.y as f32);
+            } else {
+                builder.line_to(p.x as f32, p.y as f32);
+            }
+        }
+        let Some(path) = builder.finish() else { return };
+        let stroke = Stroke {
+            width: width as f32,
+            line_cap: LineCap::Round,
+            line_join: LineJoin::Round,
+            ..Stroke::default()
+        };
+        self.pixmap
+            .stroke_path(&path, &paint(colour), &stroke, Transform::identity(), None);
+    }
+
+    /// A filled polygon.
+    pub(super) fn fill(&mut self, points: &[Point], colour: Color) {
+        let mut builder = PathBuilder::new();
+        for (k, p) in points.iter().enumerate() {
+            if k == 0 {
+                builder.move_to(p.x as f32, p.y as f32);
+            } else {
+                builder.line_to(p.x as f32, p.y as f32);
+            }
+        }
+        builder.close();
+        if let Some(path) = builder.finish() {
+            self.pixmap
+                .fill_path(&path, &paint(colour), FillRule::Winding, Transform::identity(), None);
+        }
+    }
+
+    /// A dot with a thin white rim.
+    pub(super) fn dot(&mut self, centre: Point, radius: f64, colour: Color) {
+        for (r, c) in [(radius + 1.0, Color::WHITE), (radius, colour)] {
+            if let Some(path) = PathBuilder::from_circle(centre.x as f32, centre.y as f32, r as f32) {
+                self.pixmap
+                    .fill_path(&path, &paint(c), FillRule::Winding, Transform::identity(), None);
+            }
+        }
+    }
+
+    /// One pixel, which must be on the sheet.
+    pub(super) fn pixel(&mut self, x: u32, y: u32, colour: Color) {
+        let index = (y * self.pixmap.width() + x) as usize;
+        if let Some(pixel) = self.pixmap.pixels_mut().get_mut(index) {
+            *pixel = colour.premultiply().to_color_u8();
+        }
+    }
+
+    /// Words, from their upper left corner, on a white band.
+    pub(super) fn text(&mut self, words: &str, [left, top]: [f64; 2], height: f64, colour: Color) {
+        for (band, line_width) in [(true, 0.35), (false, 0.13)] {
+            for stroke in stroke_font::strokes(words) {
+                let points: Vec<Point> = stroke
+                    .iter()
+                    .map(|p| Point::new(left, top) + p * (0.75 * height))
+                    .collect();
+                let ink = if band { Color::WHITE } else { colour };
+                self.line(&points, line_width * height, ink);
+            }
+        }
+    }
+
+    pub(super) fn into_frame(self) -> Frame {
+        Frame {
+            width: self.pixmap.width() as usize,
+            height: self.pixmap.height() as usize,
+            pixels: self
+                .pixmap
+                .pixels()
+                .iter()
+                .map(|p| [p.red(), p.green(), p.blue(), p.alpha()])
+                .collect(),
+        }
+    }
+}
+
+fn paint(colour: Color) -> Paint<'static> {
+    let mut paint = Paint::default();
+    paint.set_color(colour);
+    paint.anti_alias = true;
+    paint
+}
+
+/// Where points go so that a shape fills a square cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fit {
+    scale: f64,
+    shift: Point,
+}
+
+impl Fit {
+    /// Fits `points` into the cell at `corner`, with a tenth of it left free.
+    pub(super) fn new(points: &[Point], corner: [f64; 2], cell: f64) -> Self {
+        let (low, high) = point::bounding_box(points).unwrap_or_default();
+        let extent = (high - low).max().max(f64::MIN_POSITIVE);
+        let scale = 0.9 * cell / extent;
+        Self {
+            scale,
+            shift: Point::from(corner) + Point::repeat(0.5 * cell) - (low + high) * (0.5 * scale),
+        }
+    }
+
+    pub(super) fn place(&self, p: Point) -> Point {
+        p * self.scale + self.shift
+    }
+}

@@ -1,0 +1,84 @@
+//! The weight map.
+
+use tiny_skia::Color;
+
+use super::canvas::{Canvas, Fit};
+use super::{DiagramPose, SPACE_PX, TEXT_PX, pose_colour};
+use crate::math::Point;
+
+/// How far the map reaches beyond the poses, as a fraction of the larger side of their box.
+const REACH: f64 = 0.35;
+/// The side of a coloured square, in pixels.
+const STEP_PX: usize = 2;
+
+/// Draws the pose space in a square at `corner`: one dimension as a band, of more than two the first two with the others
+/// as in the first pose.
+pub(super) fn draw(
+    canvas: &mut Canvas,
+    poses: &[DiagramPose],
+    path: &[Vec<f64>],
+    weights: &dyn Fn(&[f64]) -> Option<Vec<f64>>,
+    corner: [f64; 2],
+) {
+    let plane = |at: &[f64]| Point::new(at.first().copied().unwrap_or(0.0), at.get(1).copied().unwrap_or(0.0));
+    let places: Vec<Point> = poses.iter().map(|pose| plane(&pose.at)).collect();
+    let (low, high) = crate::math::point::bounding_box(&places).unwrap_or_default();
+    let side = match (high - low).max() {
+        side if side > 0.0 => side,
+        _ => 1.0,
+    } * (1.0 + 2.0 * REACH);
+    let middle = (low + high) * 0.5;
+    let square = [middle - Point::repeat(0.5 * side), middle + Point::repeat(0.5 * side)];
+    // Fits leave a tenth free: undone here, the map fills its square.
+    let fit = Fit::new(&square, corner.map(|c| c - SPACE_PX / 18.0), SPACE_PX / 0.9);
+    let place_of = |x: f64, y: f64| {
+        let mut at = poses[0].at.clone();
+        let p = square[0] + Point::new(x, y) * (side / SPACE_PX);
+        for (coordinate, value) in at.iter_mut().zip([p.x, p.y]) {
+            *coordinate = value;
+        }
+        at
+    };
+    for row in (0..SPACE_PX as usize).step_by(STEP_PX) {
+        for column in (0..SPACE_PX as usize).step_by(STEP_PX) {
+            let at = place_of(column as f64 + 0.5 * STEP_PX as f64, row as f64 + 0.5 * STEP_PX as f64);
+            let colour = weights(&at).map_or(Color::WHITE, |weights| mixed(&weights));
+            for (dx, dy) in (0..STEP_PX * STEP_PX).map(|k| (k % STEP_PX, k / STEP_PX)) {
+                canvas.pixel(
+                    (corner[0] as usize + column + dx) as u32,
+                    (corner[1] as usize + row + dy) as u32,
+                    colour,
+                );
+            }
+        }
+    }
+    let along: Vec<Point> = path.iter().map(|at| fit.place(plane(at))).collect();
+    canvas.line(&along, 3.0, Color::from_rgba8(255, 255, 255, 160));
+    canvas.line(&along, 1.2, Color::from_rgba8(40, 40, 40, 220));
+    for (pose, (said, place)) in poses.iter().zip(&places).enumerate() {
+        let place = fit.place(*place);
+        canvas.dot(place, 6.0, pose_colour(pose, poses.len()));
+        canvas.text(
+            &said.name,
+            [place.x + 9.0, place.y - 0.4 * TEXT_PX],
+            TEXT_PX,
+            Color::BLACK,
+        );
+    }
+}
+
+/// The poses' colours by their weights, paler the less one pose dominates, with a dark line where the largest weight
+/// passes a half.
+fn mixed(weights: &[f64]) -> Color {
+    let mut sum = [0.0f64; 3];
+    for (pose, weight) in weights.iter().enumerate() {
+        let colour = pose_colour(pose, weights.len());
+        for (s, c) in sum.iter_mut().zip([colour.red(), colour.green(), colour.blue()]) {
+            *s += weight * f64::from(c);
+        }
+    }
+    let largest = weights.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b));
+    let shade = if (largest - 0.5).abs() < 0.008 { 0.7 } else { 1.0 };
+    let [r, g, b] = sum.map(|s| (shade * (0.35 + 0.65 * s)).clamp(0.0, 1.0) as f32);
+    Color::from_rgba(r, g, b, 1.0).unwrap_or(Color::WHITE)
+}
