@@ -11,6 +11,7 @@ pub mod compatible;
 pub mod export;
 pub mod input;
 pub mod matching;
+pub mod pipeline;
 pub mod pose;
 pub mod render;
 pub mod scene;

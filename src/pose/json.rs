@@ -247,6 +247,8 @@ impl Polygons {
                 return Err(PoseSetError::SameName(pose.name.clone()).into());
             }
             let rings = rings(&pose.name, &pose.outline, &pose.holes)?;
+            // Whether it crosses itself comes first: the area of a crossing ring says nothing.
+            let outline = assemble(&pose.name, rings.clone())?;
             for (ring, (points, given)) in rings.iter().zip(&expected).enumerate() {
                 if points.len() != *given {
                     return Err(MappingFileError::Counts(format!(
@@ -262,7 +264,7 @@ impl Polygons {
                 }
             }
             names.push(pose.name.clone());
-            outlines.push(assemble(&pose.name, rings)?);
+            outlines.push(outline);
         }
         Ok(Self { names, outlines })
     }

@@ -2,8 +2,8 @@
 //!
 //! 1. The outlines: points of equal colour correspond; every few of them carry a number and are linked from pose to pose.
 //! 2. The meshes: one triangulation, drawn on every pose; triangles keep their colour.
-//! 3. The pose space: each place has the mean of the poses' colours by their weights, with lines where a weight passes a
-//!    half; dots are the poses, the line is the animation's path.
+//! 3. The pose space: each place has the mean of the poses' colours by their weights, with lines where another
+//!    pose becomes the heaviest; dots are the poses, the line is the animation's path.
 
 mod canvas;
 mod outlines;

@@ -39,17 +39,26 @@ pub(super) fn draw(
         }
         at
     };
-    for row in (0..SPACE_PX as usize).step_by(STEP_PX) {
-        for column in (0..SPACE_PX as usize).step_by(STEP_PX) {
-            let at = place_of(column as f64 + 0.5 * STEP_PX as f64, row as f64 + 0.5 * STEP_PX as f64);
-            let colour = weights(&at).map_or(Color::WHITE, |weights| mixed(&weights));
-            for (dx, dy) in (0..STEP_PX * STEP_PX).map(|k| (k % STEP_PX, k / STEP_PX)) {
-                canvas.pixel(
-                    (corner[0] as usize + column + dx) as u32,
-                    (corner[1] as usize + row + dy) as u32,
-                    colour,
-                );
-            }
+    let cells = SPACE_PX as usize / STEP_PX;
+    let at_cell: Vec<Option<Vec<f64>>> = (0..cells * cells)
+        .map(|k| {
+            let centre = |index: usize| (index as f64 + 0.5) * STEP_PX as f64;
+            weights(&place_of(centre(k % cells), centre(k / cells)))
+        })
+        .collect();
+    let heaviest = |k: usize| {
+        let weights = at_cell.get(k)?.as_ref()?;
+        (0..weights.len()).max_by(|a, b| weights[*a].total_cmp(&weights[*b]))
+    };
+    for (k, weights) in at_cell.iter().enumerate() {
+        let (column, row) = (k % cells, k / cells);
+        let is_border = (column + 1 < cells && heaviest(k) != heaviest(k + 1))
+            || (row + 1 < cells && heaviest(k) != heaviest(k + cells));
+        let shade = if is_border { 0.6 } else { 1.0 };
+        let colour = weights.as_ref().map_or(Color::WHITE, |weights| mixed(weights, shade));
+        for (dx, dy) in (0..STEP_PX * STEP_PX).map(|k| (k % STEP_PX, k / STEP_PX)) {
+            let x = corner[0] as usize + column * STEP_PX + dx;
+            canvas.pixel(x as u32, (corner[1] as usize + row * STEP_PX + dy) as u32, colour);
         }
     }
     let along: Vec<Point> = path.iter().map(|at| fit.place(plane(at))).collect();
@@ -67,9 +76,8 @@ pub(super) fn draw(
     }
 }
 
-/// The poses' colours by their weights, paler the less one pose dominates, with a dark line where the largest weight
-/// passes a half.
-fn mixed(weights: &[f64]) -> Color {
+/// The mean of the poses' colours by their weights, made darker by `shade`.
+fn mixed(weights: &[f64], shade: f64) -> Color {
     let mut sum = [0.0f64; 3];
     for (pose, weight) in weights.iter().enumerate() {
         let colour = pose_colour(pose, weights.len());
@@ -77,8 +85,6 @@ fn mixed(weights: &[f64]) -> Color {
             *s += weight * f64::from(c);
         }
     }
-    let largest = weights.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b));
-    let shade = if (largest - 0.5).abs() < 0.008 { 0.7 } else { 1.0 };
-    let [r, g, b] = sum.map(|s| (shade * (0.35 + 0.65 * s)).clamp(0.0, 1.0) as f32);
+    let [r, g, b] = sum.map(|s| (shade * (0.25 + 0.75 * s)).clamp(0.0, 1.0) as f32);
     Color::from_rgba(r, g, b, 1.0).unwrap_or(Color::WHITE)
 }

@@ -1,0 +1,25 @@
+//! Where the stages are wired together: a scene in; its mapping, its weights, its frames out.
+//!
+//! ```text
+//! Scene --read_drawings--> [Drawing] --map_drawings--> Mapping
+//!                                                         |
+//!                     RigidBlend, Painter, WeightProvider v
+//! place in pose space --weights--> w --blend--> vertices --paint--> Frame          (Character)
+//! ```
+//!
+//! Everything left of `Character` is computed once; a frame needs two triangular solves and a pass over the pixels.
+//! A [`Character`] is immutable and can be asked from many threads at once.
+
+mod character;
+mod drawings;
+mod error;
+mod mapping;
+mod triangulation;
+mod weighting;
+
+pub use character::Character;
+pub use drawings::read_drawings;
+pub use error::PipelineError;
+pub use mapping::{MappingReport, map_drawings};
+pub use triangulation::{Refinement, triangulate_polygons};
+pub use weighting::{checked_weights, weight_provider};

@@ -1,0 +1,178 @@
+//! A character ready to be shown in any pose.
+
+use super::{PipelineError, map_drawings, read_drawings, weight_provider, weighting};
+use crate::blend::{self, BlendOptions, RigidBlend};
+use crate::input::Drawing;
+use crate::math::Point;
+use crate::pose::Mapping;
+use crate::render::{Camera, Frame, Painter, Silhouette, Texture};
+use crate::scene::{Anchor, Animation, Background, BlendReference, Scene, Stretch};
+use crate::texture::texture_weights;
+use crate::weights::WeightProvider;
+
+/// How many places of the animation the camera looks at before it chooses its distance.
+const CAMERA_PLACES: usize = 48;
+
+/// A scene's character with everything that is computed once: mapping, factorised blend, weights, textures, camera.
+#[derive(Debug)]
+pub struct Character {
+    mapping: Mapping,
+    notes: Vec<String>,
+    blend: RigidBlend,
+    weights: Box<dyn WeightProvider>,
+    texture_sharpness: f64,
+    background: Background,
+    painter: Painter,
+}
+
+impl Character {
+    /// Reads, maps and prepares the character of `scene`, for frames of `size` (columns, rows).
+    ///
+    /// The camera is fixed: it shows all poses and the whole animation.
+    ///
+    /// # Errors
+    /// [`PipelineError`] from any stage.
+    pub fn new(scene: &Scene, size: [usize; 2]) -> Result<Self, PipelineError> {
+        // The cheap refusals first.
+        let weights = weight_provider(scene, None)?;
+        let drawings = read_drawings(scene)?;
+        let (mapping, report) = map_drawings(scene, &drawings)?;
+        let mut notes = report.notes;
+        let blend = RigidBlend::new(&mapping.poses, &blend_options(scene, &mapping))?;
+        if blend.turns_are_ambiguous() {
+            notes.push(
+                "some poses are turned by half a turn against one another, so either way round is as good; \
+                 set `turns` on a pose to choose"
+                    .to_owned(),
+            );
+        }
+        let silhouette = Silhouette::new(&mapping);
+        let camera = camera(scene, size, &mapping, &blend, weights.as_ref(), &silhouette)?;
+        let textures = textures(&drawings, camera.scale());
+        Ok(Self {
+            painter: Painter::new(&mapping, textures, silhouette, camera),
+            mapping,
+            notes,
+            blend,
+            weights,
+            texture_sharpness: scene.texture_sharpness,
+            background: scene.animation.background,
+        })
+    }
+
+    /// The mapping.
+    #[must_use]
+    pub fn mapping(&self) -> &Mapping {
+        &self.mapping
+    }
+
+    /// What the artist should know, one line a remark.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// The frame at a place of the pose space.
+    ///
+    /// # Errors
+    /// [`PipelineError`] if the place has the wrong dimension or is not finite.
+    pub fn frame_at(&self, place: &[f64]) -> Result<Frame, PipelineError> {
+        let mut weights = Vec::new();
+        self.weights
+            .weights(place, &mut weights)
+            .map_err(PipelineError::Weights)?;
+        self.frame_of(&weights)
+    }
+
+    /// The frame for given weights, one a pose.
+    ///
+    /// # Errors
+    /// [`PipelineError`] if they do not fit or do not sum to 1.
+    pub fn frame_of(&self, weights: &[f64]) -> Result<Frame, PipelineError> {
+        let weights = weighting::checked_weights(weights, self.mapping.poses.names())?;
+        let mut positions = Vec::new();
+        self.blend.blend(&weights, &mut self.blend.scratch(), &mut positions)?;
+        let shown = texture_weights(&weights, self.texture_sharpness)?;
+        let mut frame = self.painter.paint(&positions, &weights, &shown);
+        if let Background::Colour(colour) = self.background {
+            frame.put_before(colour);
+        }
+        Ok(frame)
+    }
+
+    /// Frame `index` of an animation, counted from 0.
+    ///
+    /// # Errors
+    /// As [`Self::frame_at`].
+    pub fn frame(&self, animation: &Animation, index: usize) -> Result<Frame, PipelineError> {
+        self.frame_at(&animation.at(animation.time_of_frame(index)))
+    }
+}
+
+fn blend_options(scene: &Scene, mapping: &Mapping) -> BlendOptions {
+    BlendOptions {
+        reference: match scene.blend.reference {
+            BlendReference::Canonical => blend::Reference::Canonical,
+            BlendReference::Pose(pose) => blend::Reference::Pose(pose),
+        },
+        stretch: match scene.blend.stretch {
+            Stretch::Linear => blend::Stretch::Linear,
+            Stretch::Limited => blend::Stretch::Limited,
+            Stretch::Log => blend::Stretch::Log,
+        },
+        anchor: match scene.blend.anchor {
+            Anchor::Centroid => blend::Anchor::Centroid,
+            Anchor::Landmark(landmark) => blend::Anchor::Vertex(nearest_vertex(scene, mapping, landmark)),
+        },
+        turns: scene.poses.iter().map(|pose| pose.turns).collect(),
+    }
+}
+
+/// The vertex nearest to a landmark, over all poses that have it.
+fn nearest_vertex(scene: &Scene, mapping: &Mapping, landmark: usize) -> usize {
+    let places = &scene.landmarks[landmark].at;
+    let distance = |vertex: usize| -> f64 {
+        places
+            .iter()
+            .zip(mapping.poses.positions())
+            .filter_map(|(place, positions)| place.map(|place| (positions[vertex] - place).norm()))
+            .sum()
+    };
+    (0..mapping.poses.topology().vertex_count())
+        .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+        .unwrap_or(0)
+}
+
+fn camera(
+    scene: &Scene,
+    size: [usize; 2],
+    mapping: &Mapping,
+    blend: &RigidBlend,
+    weights: &dyn WeightProvider,
+    silhouette: &Silhouette,
+) -> Result<Camera, PipelineError> {
+    let mut shown: Vec<Point> = mapping
+        .outlines
+        .iter()
+        .flat_map(|outline| outline.outer().points().iter().copied())
+        .collect();
+    let animation = &scene.animation;
+    let (start, count) = (animation.time_of_frame(0), CAMERA_PLACES);
+    let (mut at_place, mut positions, mut scratch) = (Vec::new(), Vec::new(), blend.scratch());
+    for k in 0..count {
+        let time = start + animation.duration() * k as f64 / count as f64;
+        weights
+            .weights(&animation.at(time), &mut at_place)
+            .map_err(PipelineError::Weights)?;
+        blend.blend(&at_place, &mut scratch, &mut positions)?;
+        shown.extend(silhouette.at(&positions, &at_place).into_iter().flatten());
+    }
+    Ok(Camera::fitting(&shown, size))
+}
+
+fn textures(drawings: &[Drawing], frame_scale: f64) -> Vec<Texture> {
+    drawings
+        .iter()
+        .map(|drawing| Texture::new(&drawing.picture, &drawing.outline, frame_scale))
+        .collect()
+}

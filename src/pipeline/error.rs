@@ -1,0 +1,125 @@
+//! Why a scene gives no pictures.
+
+use std::path::PathBuf;
+
+use crate::blend::BlendError;
+use crate::input::InputError;
+use crate::scene::SceneError;
+use crate::texture::TextureError;
+use crate::weights::WeightError;
+
+/// Why the pipeline stopped. Every message names the pose or file that it is about.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PipelineError {
+    /// The scene file is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A drawing cannot be used.
+    #[error("pose '{pose}' ({}): {source}", file.display())]
+    Drawing {
+        /// The pose's name.
+        pose: String,
+        /// Its file.
+        file: PathBuf,
+        /// What is wrong.
+        source: InputError,
+    },
+    /// The poses have different numbers of holes.
+    #[error(
+        "pose '{pose}' has {found} holes, but pose '{other}' has {expected}; draw the same holes in every pose, or set \
+         `holes = \"fill\"` under [input]"
+    )]
+    HoleCount {
+        /// The pose that differs.
+        pose: String,
+        /// Its holes.
+        found: usize,
+        /// The pose it differs from.
+        other: String,
+        /// That pose's holes.
+        expected: usize,
+    },
+    /// A landmark lies off the outline.
+    #[error(
+        "landmark '{landmark}' (line {line}): on pose '{pose}' it lies {distance:.1} units from the outline, at most \
+         {largest:.1} are allowed; move ({x:.1}, {y:.1}) onto the outline (landmarks inside the shape are not supported yet)"
+    )]
+    LandmarkOffOutline {
+        /// Its name.
+        landmark: String,
+        /// The line of the scene file.
+        line: usize,
+        /// The pose's name.
+        pose: String,
+        /// How far it is off, in source units.
+        distance: f64,
+        /// How far it may be off.
+        largest: f64,
+        /// Its place.
+        x: f64,
+        /// Its place.
+        y: f64,
+    },
+    /// Landmarks contradict one another.
+    #[error(
+        "landmark '{landmark}' makes the order impossible: going around pose '{pose}' the landmarks come in another order \
+         than around pose '{other}'; correct its place on one of them, or set `mirror = true` if one faces the other way"
+    )]
+    LandmarkOrder {
+        /// The landmark's name.
+        landmark: String,
+        /// A pose's name.
+        pose: String,
+        /// The other pose's name.
+        other: String,
+    },
+    /// Two landmarks lie at one place.
+    #[error("landmarks '{first}' and '{second}' lie at the same place of pose '{pose}'; move one or remove it")]
+    LandmarksCoincide {
+        /// A landmark's name.
+        first: String,
+        /// The other's.
+        second: String,
+        /// The pose's name.
+        pose: String,
+    },
+    /// A landmark without a place.
+    #[error("landmark '{landmark}' (line {line}) lies on no pose; give it a place on at least one")]
+    LandmarkNowhere {
+        /// Its name.
+        landmark: String,
+        /// The line of the scene file.
+        line: usize,
+    },
+    /// A stage refused; the message says why.
+    #[error("{}{message}", pose.as_ref().map(|p| format!("pose '{p}': ")).unwrap_or_default())]
+    Stage {
+        /// The pose's name, where one is to blame.
+        pose: Option<String>,
+        /// What is wrong.
+        message: String,
+    },
+    /// The weights cannot be computed.
+    #[error("pose space: {0}")]
+    Weights(WeightError),
+    /// The weights given do not sum to 1, or are too many or too few.
+    #[error("{0}")]
+    BadWeights(String),
+    /// The shapes cannot be blended.
+    #[error("blend: {0}")]
+    Blend(#[from] BlendError),
+    /// The textures cannot be weighted.
+    #[error("texture: {0}")]
+    Texture(#[from] TextureError),
+}
+
+impl PipelineError {
+    /// A stage's refusal about the pose of an index.
+    pub(super) fn stage(names: &[String], pose: Option<usize>, message: impl std::fmt::Display) -> Self {
+        Self::Stage {
+            pose: pose.and_then(|k| names.get(k)).cloned(),
+            message: message.to_string(),
+        }
+    }
+}

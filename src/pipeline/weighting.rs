@@ -1,0 +1,89 @@
+//! The weights a scene asks for.
+
+use super::PipelineError;
+use crate::scene::{Provider, Radial, Scene};
+use crate::weights::{self, BiharmonicOptions, BiharmonicWeights, RbfOptions, RbfWeights, WeightError, WeightProvider};
+
+/// How far the sum of given weights may be from 1.
+const SUM_TOLERANCE: f64 = 1e-6;
+
+/// The weight provider of a scene; `provider` overrides the scene's own choice.
+///
+/// # Errors
+/// [`PipelineError::Weights`], naming poses, if the layout allows no weights.
+pub fn weight_provider(scene: &Scene, provider: Option<Provider>) -> Result<Box<dyn WeightProvider>, PipelineError> {
+    let places: Vec<Vec<f64>> = scene.poses.iter().map(|pose| pose.at.clone()).collect();
+    let built: Result<Box<dyn WeightProvider>, WeightError> = match provider.unwrap_or(scene.pose_space.provider) {
+        Provider::Biharmonic => {
+            let options = BiharmonicOptions {
+                epsilon: scene.pose_space.epsilon,
+                ..BiharmonicOptions::default()
+            };
+            BiharmonicWeights::new(&places, &options).map(|w| Box::new(w) as _)
+        }
+        Provider::Rbf => {
+            let options = RbfOptions {
+                radial: match scene.pose_space.radial {
+                    Radial::BSpline => weights::Radial::BSpline,
+                    Radial::ThinPlate => weights::Radial::ThinPlate,
+                },
+                pseudo_poses: scene
+                    .pseudo_poses
+                    .iter()
+                    .map(|pseudo| weights::PseudoPose {
+                        from: pseudo.from.clone(),
+                        at: pseudo.at.clone(),
+                    })
+                    .collect(),
+                ..RbfOptions::default()
+            };
+            RbfWeights::new(&places, &options).map(|w| Box::new(w) as _)
+        }
+    };
+    built.map_err(PipelineError::Weights)
+}
+
+/// Weights given by hand, made to sum to exactly 1.
+///
+/// # Errors
+/// [`PipelineError::BadWeights`] if there is not one a pose, one is not finite, or the sum is off by more than 1e-6.
+pub fn checked_weights(given: &[f64], names: &[String]) -> Result<Vec<f64>, PipelineError> {
+    if given.len() != names.len() {
+        let poses = names.iter().map(|n| format!("'{n}'")).collect::<Vec<_>>().join(", ");
+        return Err(PipelineError::BadWeights(format!(
+            "{} weights for {} poses; give one for each of {poses}, in this order",
+            given.len(),
+            names.len()
+        )));
+    }
+    if let Some(bad) = given.iter().position(|w| !w.is_finite()) {
+        return Err(PipelineError::BadWeights(format!(
+            "the weight of pose '{}' is {}; weights must be finite numbers",
+            names[bad], given[bad]
+        )));
+    }
+    let sum: f64 = given.iter().sum();
+    // Written so that an overflow fails too.
+    if !((sum - 1.0).abs() <= SUM_TOLERANCE) {
+        return Err(PipelineError::BadWeights(format!(
+            "the weights sum to {sum}, but must sum to 1 (within {SUM_TOLERANCE:e}); divide each by {sum}"
+        )));
+    }
+    Ok(given.iter().map(|w| w / sum).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_must_fit_and_sum_to_one() {
+        let names = ["a".to_owned(), "b".to_owned()];
+        assert_eq!(checked_weights(&[1.5, -0.5], &names).expect("they do"), vec![1.5, -0.5]);
+        let nearly = checked_weights(&[0.5, 0.5000005], &names).expect("nearly");
+        assert!((nearly.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+        for bad in [&[0.5, 0.6][..], &[1.0], &[f64::NAN, 1.0], &[f64::MAX, f64::MAX]] {
+            assert!(checked_weights(bad, &names).is_err(), "{bad:?}");
+        }
+    }
+}
