@@ -1,3 +1,9 @@
-//! The command.
+//! The command `inbetween`.
 
-fn main() {}
+mod cli;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::run()
+}

@@ -1,0 +1,93 @@
+//! `inbetween blend`.
+
+use std::path::PathBuf;
+
+use anyhow::{Context as _, anyhow};
+use inbetween::blend::{BlendOptions, Reference, RigidBlend, Stretch};
+use inbetween::pipeline::checked_weights;
+use inbetween::pose::PoseSet;
+use serde::Serialize;
+
+use super::output::{Output, read_text};
+use super::values::Numbers;
+use super::{Failure, Verbosity};
+
+/// Blend the poses of a mapping
+///
+/// Writes {"vertices": [[x, y], ...], "weights": [...], "flipped": count} for one set of weights.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  inbetween blend walker.json --weights 0.5,0.5,0,0,0 -o half.json")]
+pub(crate) struct Arguments {
+    /// The mapping
+    mapping: PathBuf,
+    /// Weights, one a pose, that sum to 1
+    #[arg(long, value_name = "W0,W1,...", allow_hyphen_values = true)]
+    weights: Numbers,
+    /// What transformations are measured from: canonical (no pose is special), or a pose's name (the paper's form)
+    #[arg(long, value_name = "canonical|POSE", default_value = "canonical")]
+    reference: String,
+    /// How stretches are blended
+    #[arg(long, default_value = "linear", value_parser = ["linear", "limited", "log"])]
+    stretch: String,
+    /// What happens to triangles that come out inverted
+    #[arg(long, default_value = "off", value_parser = ["off", "repair"])]
+    frame_guard: String,
+    /// The blended frame, or - for standard output
+    #[arg(short, long, value_name = "FRAME.json")]
+    output: PathBuf,
+}
+
+#[derive(Serialize)]
+struct FrameText {
+    vertices: Vec<[f64; 2]>,
+    weights: Vec<f64>,
+    flipped: usize,
+}
+
+pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
+    if arguments.frame_guard == "repair" {
+        return Err(anyhow!("--frame-guard repair is not supported yet; leave it off").into());
+    }
+    let in_file = || arguments.mapping.display().to_string();
+    let poses = PoseSet::from_mapping_json(&read_text(&arguments.mapping)?).with_context(in_file)?;
+    let weights = checked_weights(&arguments.weights.0, poses.names()).context("--weights")?;
+    let reference = match arguments.reference.as_str() {
+        "canonical" => Reference::Canonical,
+        name => Reference::Pose(poses.index_of(name).with_context(|| {
+            format!(
+                "--reference: {} has no pose '{name}'; its poses are {}",
+                in_file(),
+                poses.names().join(", ")
+            )
+        })?),
+    };
+    let stretch = match arguments.stretch.as_str() {
+        "limited" => Stretch::Limited,
+        "log" => Stretch::Log,
+        _ => Stretch::Linear,
+    };
+    let output = Output::open(&arguments.output)?;
+    let options = BlendOptions {
+        reference,
+        stretch,
+        ..BlendOptions::default()
+    };
+    let blend = RigidBlend::new(&poses, &options).with_context(in_file)?;
+    let mut vertices = Vec::new();
+    let report = blend
+        .blend(&weights, &mut blend.scratch(), &mut vertices)
+        .with_context(in_file)?;
+    if report.flipped > 0 {
+        verbosity.note(&format!(
+            "note: {} triangles are inverted at these weights",
+            report.flipped
+        ));
+    }
+    let mut text = serde_json::to_string(&FrameText {
+        vertices: vertices.iter().map(|p| [p.x, p.y]).collect(),
+        weights,
+        flipped: report.flipped,
+    })?;
+    text.push('\n');
+    Ok(output.write(text.as_bytes())?)
+}

@@ -1,0 +1,76 @@
+//! `inbetween frame`.
+
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use inbetween::export::png_bytes;
+use inbetween::pipeline::{Character, checked_weights};
+use inbetween::scene::Scene;
+
+use super::output::Output;
+use super::values::{Grid, Numbers};
+use super::{Failure, Verbosity};
+
+/// Render one frame of a scene
+///
+/// At a place of the pose space, or for weights given one a pose in the scene's order. Weights must sum to 1; they may
+/// be negative or larger than 1.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  inbetween frame walker/scene.toml --at 0.5,0.5 -o between.png
+  inbetween frame walker/scene.toml --weights 0.5,0.5,0,0,0 -o half.png")]
+pub(crate) struct Arguments {
+    /// The scene file
+    scene: PathBuf,
+    /// A place of the pose space: X,Y or as many numbers as it has dimensions
+    #[arg(
+        long,
+        value_name = "X,Y",
+        allow_hyphen_values = true,
+        required_unless_present = "weights",
+        conflicts_with = "weights"
+    )]
+    at: Option<Numbers>,
+    /// Weights, one a pose
+    #[arg(long, value_name = "W0,W1,...", allow_hyphen_values = true)]
+    weights: Option<Numbers>,
+    /// The picture, a .png file, or - for standard output
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Columns and rows, such as 1920x1080; the scene's otherwise
+    #[arg(long, value_name = "WxH")]
+    size: Option<Grid>,
+}
+
+pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
+    let suffix = arguments.output.extension().map(|s| s.to_string_lossy().to_lowercase());
+    if arguments.output.as_os_str() != "-" && suffix.as_deref() != Some("png") {
+        return Err(Failure::Usage(format!(
+            "{}: a frame is written as .png; name the file so",
+            arguments.output.display()
+        )));
+    }
+    let scene = Scene::open(&arguments.scene)?;
+    if let Some(Numbers(weights)) = &arguments.weights {
+        checked_weights(weights, &scene.names()).context("--weights")?;
+    }
+    if let Some(Numbers(place)) = &arguments.at {
+        super::weights::check_place(place, &scene)?;
+    }
+    let output = Output::open(&arguments.output)?;
+    let size = arguments
+        .size
+        .map_or(scene.animation.size.map(|side| side as usize), |grid| grid.0);
+    let character = Character::new(&scene, size).with_context(|| scene.file.display().to_string())?;
+    for note in character.notes() {
+        verbosity.note(&format!("note: {note}"));
+    }
+    let frame = match (&arguments.at, &arguments.weights) {
+        (_, Some(Numbers(weights))) => character.frame_of(weights)?,
+        (Some(Numbers(place)), None) => character.frame_at(place)?,
+        (None, None) => return Err(Failure::Usage("give --at or --weights".to_owned())),
+    };
+    let bytes = png_bytes(&frame).map_err(|reason| anyhow::anyhow!("{}: {reason}", arguments.output.display()))?;
+    Ok(output.write(&bytes)?)
+}

@@ -1,0 +1,55 @@
+//! `inbetween map`.
+
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use inbetween::pipeline::{map_drawings, read_drawings};
+use inbetween::scene::Scene;
+
+use super::output::Output;
+use super::{Failure, Verbosity};
+
+/// Map the drawings of a scene onto one another and write the mapping
+///
+/// The mapping is one triangulation with a place of every vertex on every pose, as JSON: poses with outlines and
+/// vertices, triangles, boundary rings and the matching of the outlines.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  inbetween map walker/scene.toml -o walker.json && inbetween check walker.json")]
+pub(crate) struct Arguments {
+    /// The scene file
+    scene: PathBuf,
+    /// The mapping, or - for standard output
+    #[arg(short, long, value_name = "MAPPING.json")]
+    output: PathBuf,
+    /// The layer, in a scene with layers
+    #[arg(long, value_name = "NAME")]
+    layer: Option<String>,
+}
+
+pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
+    let scene = Scene::open(&arguments.scene)?;
+    if let Some(layer) = &arguments.layer {
+        return Err(anyhow::anyhow!(
+            "{}: there is no layer '{layer}'; leave out --layer",
+            scene.file.display()
+        )
+        .into());
+    }
+    let output = Output::open(&arguments.output)?;
+    let in_scene = || scene.file.display().to_string();
+    let drawings = read_drawings(&scene).with_context(in_scene)?;
+    let (mapping, report) = map_drawings(&scene, &drawings).with_context(in_scene)?;
+    for note in &report.notes {
+        verbosity.note(&format!("note: {note}"));
+    }
+    output.write(mapping.to_json().as_bytes())?;
+    verbosity.note(&format!(
+        "{} poses, {} vertices, {} triangles, {} Steiner points, smallest angle {:.1} degrees",
+        mapping.poses.len(),
+        mapping.poses.topology().vertex_count(),
+        mapping.poses.topology().triangles().len(),
+        mapping.steiner,
+        report.smallest_angle_deg
+    ));
+    Ok(())
+}

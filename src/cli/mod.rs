@@ -1,0 +1,129 @@
+//! Arguments and messages, one file a verb.
+//!
+//! Exit codes: 0 done, 1 bad input or failed work, 2 wrong usage. Results go to files or standard output, everything
+//! else to standard error.
+
+mod blend;
+mod check;
+mod frame;
+mod frames;
+mod map;
+mod new;
+mod output;
+mod progress;
+mod render;
+mod show;
+mod triangulate;
+mod values;
+mod weights;
+
+use std::io::Write as _;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Everything a stranger needs first.
+const AFTER_HELP: &str = "\
+Start with a folder of drawings of one character in several poses (PNG with a transparent or plain background):
+  inbetween new cat drawings/*.png         writes cat/scene.toml
+  inbetween render cat/scene.toml -o cat.gif
+  inbetween show cat/scene.toml -o cat.png    how the drawings were matched, meshed and weighted
+`inbetween help VERB` explains a verb.";
+
+#[derive(Parser)]
+#[command(name = "inbetween", version, about = "N-way morphing for 2D animation", after_help = AFTER_HELP)]
+struct Arguments {
+    /// Print nothing but errors
+    #[arg(long, global = true)]
+    quiet: bool,
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    New(new::Arguments),
+    Render(render::Arguments),
+    Frame(frame::Arguments),
+    Map(map::Arguments),
+    Triangulate(triangulate::Arguments),
+    Blend(blend::Arguments),
+    Weights(weights::Arguments),
+    Check(check::Arguments),
+    Show(show::Arguments),
+}
+
+/// Why a verb did not do its work.
+pub(crate) enum Failure {
+    /// The command line asks for something that does not exist: exit code 2.
+    Usage(String),
+    /// Bad input or failed work: exit code 1.
+    Work(anyhow::Error),
+}
+
+impl<E: Into<anyhow::Error>> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::Work(error.into())
+    }
+}
+
+/// Messages for the person at the terminal.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Verbosity {
+    /// Errors only.
+    Quiet,
+    /// Notes and progress, too.
+    Normal,
+}
+
+impl Verbosity {
+    /// Prints a line to standard error, unless quiet.
+    pub(crate) fn note(self, line: &str) {
+        if self == Self::Normal {
+            // Nobody listens: nothing to be done.
+            let _ = writeln!(std::io::stderr(), "{line}");
+        }
+    }
+}
+
+/// Runs the command line.
+pub(crate) fn run() -> ExitCode {
+    let arguments = Arguments::parse();
+    let verbosity = if arguments.quiet {
+        Verbosity::Quiet
+    } else {
+        Verbosity::Normal
+    };
+    let outcome = match arguments.verb {
+        Verb::New(verb) => new::run(&verb, verbosity),
+        Verb::Render(verb) => render::run(&verb, verbosity),
+        Verb::Frame(verb) => frame::run(&verb, verbosity),
+        Verb::Map(verb) => map::run(&verb, verbosity),
+        Verb::Triangulate(verb) => triangulate::run(&verb),
+        Verb::Blend(verb) => blend::run(&verb, verbosity),
+        Verb::Weights(verb) => weights::run(&verb),
+        Verb::Check(verb) => check::run(&verb),
+        Verb::Show(verb) => show::run(&verb, verbosity),
+    };
+    let (code, message) = match outcome {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(Failure::Work(error)) => (1, told_once(&error)),
+        Err(Failure::Usage(message)) => (2, message),
+    };
+    let _ = writeln!(std::io::stderr(), "inbetween: {message}");
+    ExitCode::from(code)
+}
+
+/// The error and its causes, left out where the text above already says them.
+fn told_once(error: &anyhow::Error) -> String {
+    let mut message = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if message.is_empty() {
+            message = cause;
+        } else if !message.contains(&cause) {
+            message.push_str(": ");
+            message.push_str(&cause);
+        }
+    }
+    message
+}

@@ -1,0 +1,148 @@
+//! `inbetween new`.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+use inbetween::export::PendingFile;
+use inbetween::scene::{NewPose, scene_text};
+
+use super::{Failure, Verbosity};
+
+/// The kinds of drawings, by suffix.
+const SUFFIXES: [&str; 7] = ["png", "jpg", "jpeg", "webp", "gif", "bmp", "svg"];
+
+/// Write a scene file for some drawings
+///
+/// Writes DIR/scene.toml with one pose a drawing, named after its file and laid out evenly on a circle. Drawings that
+/// are not in DIR are copied into it, so that the folder is complete. An existing scene file is never overwritten.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  inbetween new cat stand.png run.png jump.png\n  inbetween render cat/scene.toml -o cat.gif"
+)]
+pub(crate) struct Arguments {
+    /// The folder of the scene; made if it does not exist
+    dir: PathBuf,
+    /// The drawings: PNG, JPEG, WebP, GIF, BMP or SVG
+    #[arg(required = true, value_name = "POSE")]
+    poses: Vec<PathBuf>,
+}
+
+/// A drawing that has to be copied, and where to.
+struct Copy {
+    bytes: Vec<u8>,
+    target: PathBuf,
+}
+
+pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
+    let scene_file = arguments.dir.join("scene.toml");
+    let is_new = !arguments.dir.exists();
+    // Everything is checked before anything is written.
+    if scene_file.exists() {
+        return Err(anyhow::anyhow!(
+            "{} exists; remove it first or choose another folder",
+            scene_file.display()
+        )
+        .into());
+    }
+    let (poses, copies) = plan(arguments)?;
+    std::fs::create_dir_all(&arguments.dir)
+        .with_context(|| format!("cannot make the folder {}", arguments.dir.display()))?;
+    let written = write(&copies, &scene_file, &scene_text(&poses));
+    if written.is_err() {
+        for copy in &copies {
+            let _ = std::fs::remove_file(&copy.target);
+        }
+        if is_new {
+            let _ = std::fs::remove_dir(&arguments.dir);
+        }
+    }
+    written?;
+    verbosity.note(&format!(
+        "wrote {} with {} poses; next: inbetween render {0} -o {}.gif",
+        scene_file.display(),
+        poses.len(),
+        arguments
+            .dir
+            .file_name()
+            .map_or_else(|| "character".into(), |n| n.to_string_lossy()),
+    ));
+    Ok(())
+}
+
+fn plan(arguments: &Arguments) -> anyhow::Result<(Vec<NewPose>, Vec<Copy>)> {
+    let folder = arguments.dir.canonicalize().ok();
+    let mut poses: Vec<NewPose> = Vec::new();
+    let mut copies: Vec<Copy> = Vec::new();
+    for path in &arguments.poses {
+        let suffix = path
+            .extension()
+            .map(|s| s.to_string_lossy().to_lowercase())
+            .unwrap_or_default();
+        if !SUFFIXES.contains(&suffix.as_str()) {
+            bail!(
+                "{} is no drawing; give files that end in {}",
+                path.display(),
+                SUFFIXES.join(", ")
+            );
+        }
+        let whole = path
+            .canonicalize()
+            .with_context(|| format!("cannot open the drawing {}", path.display()))?;
+        let inside = folder.as_ref().and_then(|folder| whole.strip_prefix(folder).ok());
+        let source = match inside {
+            Some(relative) => portable(relative),
+            None => {
+                let name = file_name(path)?;
+                let target = arguments.dir.join(&name);
+                if target.exists() || copies.iter().any(|copy| copy.target == target) {
+                    bail!(
+                        "{} would overwrite {}; rename one of the drawings",
+                        path.display(),
+                        target.display()
+                    );
+                }
+                copies.push(Copy {
+                    bytes: std::fs::read(path)
+                        .with_context(|| format!("cannot read the drawing {}", path.display()))?,
+                    target,
+                });
+                name
+            }
+        };
+        if poses.iter().any(|pose| pose.source == source) {
+            bail!("{} is given twice; give every drawing once", path.display());
+        }
+        let stem = path
+            .file_stem()
+            .map(|s| s.to_string_lossy().into_owned())
+            .unwrap_or_default();
+        let mut name = stem.clone();
+        let mut number = 2;
+        while poses.iter().any(|pose| pose.name == name) {
+            name = format!("{stem}-{number}");
+            number += 1;
+        }
+        poses.push(NewPose { name, source });
+    }
+    Ok((poses, copies))
+}
+
+fn write(copies: &[Copy], scene_file: &Path, text: &str) -> anyhow::Result<()> {
+    for copy in copies {
+        PendingFile::write_whole(&copy.target, &copy.bytes)?;
+    }
+    Ok(PendingFile::write_whole(scene_file, text.as_bytes())?)
+}
+
+fn file_name(path: &Path) -> anyhow::Result<String> {
+    let name = path.file_name().and_then(|n| n.to_str());
+    Ok(name
+        .with_context(|| format!("{} is no readable file name", path.display()))?
+        .to_owned())
+}
+
+/// The path with slashes, on every system.
+fn portable(path: &Path) -> String {
+    let words: Vec<_> = path.components().map(|c| c.as_os_str().to_string_lossy()).collect();
+    words.join("/")
+}

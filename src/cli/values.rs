@@ -1,0 +1,114 @@
+//! Values as they are written on the command line.
+
+/// Numbers separated by commas: a place, or weights.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Numbers(pub(crate) Vec<f64>);
+
+impl std::str::FromStr for Numbers {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        text.split(',')
+            .map(|word| {
+                word.trim()
+                    .parse::<f64>()
+                    .map_err(|_| format!("'{word}' is not a number; write numbers separated by commas"))
+            })
+            .collect::<Result<_, _>>()
+            .map(Self)
+    }
+}
+
+/// `COLUMNSxROWS`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Grid(pub(crate) [usize; 2]);
+
+impl std::str::FromStr for Grid {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        /// The largest picture or grid.
+        const MOST: usize = 16_384;
+        let wrong = || format!("'{text}' is not COLUMNSxROWS with whole numbers from 1 to {MOST}, such as 1920x1080");
+        let (columns, rows) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
+        let side = |word: &str| {
+            word.parse::<usize>()
+                .ok()
+                .filter(|n| (1..=MOST).contains(n))
+                .ok_or_else(wrong)
+        };
+        Ok(Self([side(columns)?, side(rows)?]))
+    }
+}
+
+/// Frame numbers from 1: `1-10,20`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct FrameNumbers(Vec<std::ops::RangeInclusive<usize>>);
+
+impl std::str::FromStr for FrameNumbers {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("'{text}' is no list of frame numbers from 1, such as 1-10,20");
+        let number = |word: &str| word.trim().parse::<usize>().ok().filter(|n| *n >= 1).ok_or_else(wrong);
+        text.split(',')
+            .map(|word| match word.split_once('-') {
+                Some((first, last)) => Ok(number(first)?..=number(last)?),
+                None => number(word).map(|n| n..=n),
+            })
+            .map(|range| range.and_then(|r| if r.is_empty() { Err(wrong()) } else { Ok(r) }))
+            .collect::<Result<_, _>>()
+            .map(Self)
+    }
+}
+
+impl FrameNumbers {
+    /// The numbers in order, each once; an error if one is beyond `count`.
+    pub(crate) fn within(&self, count: usize) -> Result<Vec<usize>, String> {
+        if let Some(beyond) = self.0.iter().map(|r| *r.end()).find(|n| *n > count) {
+            return Err(format!(
+                "frame {beyond} does not exist: the animation has {count} frames"
+            ));
+        }
+        Ok((1..=count).filter(|n| self.0.iter().any(|r| r.contains(n))).collect())
+    }
+}
+
+/// Frames a second.
+pub(crate) fn frame_rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(fps) if fps > 0.0 && fps <= 1000.0 => Ok(fps),
+        _ => Err(format!("'{text}' is no frame rate above 0 and at most 1000")),
+    }
+}
+
+/// A number of threads.
+pub(crate) fn thread_count(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(threads) if (1..=1024).contains(&threads) => Ok(threads),
+        _ => Err(format!("'{text}' is no number of threads from 1 to 1024")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frame_numbers_are_sorted_and_bounded() {
+        let numbers: FrameNumbers = "20,3-5,4".parse().expect("numbers");
+        assert_eq!(numbers.within(20), Ok(vec![3, 4, 5, 20]));
+        assert!(numbers.within(19).is_err());
+        for wrong in ["", "0", "5-3", "a", "1-"] {
+            assert!(wrong.parse::<FrameNumbers>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn grids_and_numbers() {
+        assert_eq!("1920x1080".parse(), Ok(Grid([1920, 1080])));
+        assert!("0x5".parse::<Grid>().is_err() && "99999x1".parse::<Grid>().is_err() && "5".parse::<Grid>().is_err());
+        assert_eq!("-1,0.5".parse(), Ok(Numbers(vec![-1.0, 0.5])));
+        assert!("1,,2".parse::<Numbers>().is_err());
+    }
+}

@@ -1,0 +1,203 @@
+//! The command does what its help says.
+
+mod workshop;
+
+use workshop::Workshop;
+
+fn two() -> Workshop {
+    let workshop = Workshop::new();
+    workshop.two_poses(
+        "[0, 0]",
+        "[1, 0]",
+        "[animation]\nfps = 6\nsize = [48, 36]\nbackground = \"transparent\"\n",
+    );
+    workshop
+}
+
+fn bytes(workshop: &Workshop, name: &str) -> Vec<u8> {
+    std::fs::read(workshop.path(name)).expect(name)
+}
+
+#[test]
+fn any_frames_on_any_threads_are_the_same_bytes() {
+    let workshop = two();
+    workshop.succeeds(&["render", "scene.toml", "-o", "whole", "--threads", "3"]);
+    workshop.succeeds(&[
+        "render",
+        "scene.toml",
+        "-o",
+        "part",
+        "--frames",
+        "11,2-3",
+        "--threads",
+        "1",
+    ]);
+    let mut names: Vec<_> = std::fs::read_dir(workshop.path("part"))
+        .expect("a folder")
+        .map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    let stem = names[0].split('.').next().expect("a name").to_owned();
+    let expected: Vec<String> = [2, 3, 11].iter().map(|k| format!("{stem}.{k:04}.png")).collect();
+    assert_eq!(names, expected);
+    for name in &names {
+        assert_eq!(
+            bytes(&workshop, &format!("part/{name}")),
+            bytes(&workshop, &format!("whole/{name}"))
+        );
+    }
+    assert_eq!(std::fs::read_dir(workshop.path("whole")).expect("a folder").count(), 12);
+    // Only what is missing is rendered again.
+    let (first, second) = (
+        workshop.path(&format!("whole/{stem}.0001.png")),
+        workshop.path(&format!("whole/{stem}.0002.png")),
+    );
+    std::fs::write(&first, b"kept").expect("written");
+    std::fs::remove_file(&second).expect("removed");
+    workshop.succeeds(&["render", "scene.toml", "-o", "whole", "--resume"]);
+    assert_eq!(std::fs::read(&first).expect("there"), b"kept");
+    assert_eq!(
+        std::fs::read(&second).expect("there"),
+        bytes(&workshop, &format!("part/{stem}.0002.png"))
+    );
+}
+
+#[test]
+fn gif_and_apng_are_the_same_for_any_threads() {
+    let workshop = two();
+    for kind in ["gif", "apng"] {
+        let [one, many] = ["1", "4"].map(|threads| {
+            let name = format!("{threads}.{kind}");
+            workshop.succeeds(&["render", "scene.toml", "-o", &name, "--threads", threads]);
+            bytes(&workshop, &name)
+        });
+        assert!(one == many, "{kind}");
+        assert!(!one.is_empty());
+    }
+    // A kind that the name does not say.
+    workshop.succeeds(&["render", "scene.toml", "-o", "other", "--format", "gif"]);
+    assert!(bytes(&workshop, "other") == bytes(&workshop, "1.gif"));
+}
+
+#[test]
+fn a_pose_is_returned_at_its_place_and_for_its_weight() {
+    let workshop = two();
+    workshop.succeeds(&["frame", "scene.toml", "--at", "1,0", "-o", "at.png"]);
+    workshop.succeeds(&["frame", "scene.toml", "--weights", "0,1", "-o", "weights.png"]);
+    let [at, weights] = ["at.png", "weights.png"].map(|n| image::open(workshop.path(n)).expect("a picture").to_rgba8());
+    assert_eq!(at.dimensions(), (48, 36));
+    let opaque: Vec<_> = weights.enumerate_pixels().filter(|(_, _, p)| p.0[3] == 255).collect();
+    assert!(opaque.iter().all(|(_, _, p)| p.0[2] > 200 && p.0[0] < 40), "blue");
+    let (left, right) = (opaque.iter().map(|p| p.0).min(), opaque.iter().map(|p| p.0).max());
+    let (top, bottom) = (opaque.iter().map(|p| p.1).min(), opaque.iter().map(|p| p.1).max());
+    let spread = |low: Option<u32>, high: Option<u32>| high.expect("some") - low.expect("some");
+    assert!(spread(left, right) > spread(top, bottom) * 3 / 2, "wide");
+    let differing = at
+        .pixels()
+        .zip(weights.pixels())
+        .filter(|(a, b)| (0..4).any(|k| a.0[k].abs_diff(b.0[k]) > 1))
+        .count();
+    assert_eq!(differing, 0);
+}
+
+#[test]
+fn one_pose_is_returned_everywhere() {
+    let workshop = two();
+    workshop.scene("[[pose]]\nname = \"tall\"\nsource = \"tall.png\"\n[animation]\nsize = [40, 40]\n");
+    workshop.succeeds(&["frame", "scene.toml", "--at", "0,0", "-o", "a.png"]);
+    workshop.succeeds(&["frame", "scene.toml", "--at=-3,17", "-o", "b.png"]);
+    workshop.succeeds(&["frame", "scene.toml", "--weights", "1", "-o", "c.png"]);
+    assert!(
+        bytes(&workshop, "a.png") == bytes(&workshop, "b.png")
+            && bytes(&workshop, "a.png") == bytes(&workshop, "c.png")
+    );
+    workshop.succeeds(&["map", "scene.toml", "-o", "m.json"]);
+    workshop.succeeds(&["check", "m.json"]);
+}
+
+#[test]
+fn a_mapping_blends_to_its_poses() {
+    let workshop = two();
+    workshop.succeeds(&["map", "scene.toml", "-o", "m.json"]);
+    let line = workshop.succeeds(&["check", "m.json"]);
+    assert!(line.contains("valid: 2 poses"), "{line}");
+    let mapping: serde_json::Value = serde_json::from_slice(&bytes(&workshop, "m.json")).expect("JSON");
+    assert!(mapping["matching"]["samples"].as_array().expect("rows").len() >= 256);
+    for reference in ["canonical", "tall"] {
+        let text = workshop.succeeds(&[
+            "blend",
+            "m.json",
+            "--weights",
+            "0,1",
+            "--reference",
+            reference,
+            "-o",
+            "-",
+        ]);
+        let frame: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(frame["flipped"], 0);
+        let (found, given) = (
+            frame["vertices"].as_array().expect("vertices"),
+            &mapping["poses"][1]["vertices"],
+        );
+        for (k, vertex) in found.iter().enumerate() {
+            for d in 0..2 {
+                let difference = vertex[d].as_f64().expect("a number") - given[k][d].as_f64().expect("a number");
+                assert!(difference.abs() < 1e-8, "vertex {k}: {difference}");
+            }
+        }
+    }
+}
+
+#[test]
+fn weights_need_no_drawing() {
+    let workshop = two();
+    std::fs::remove_file(workshop.path("tall.png")).expect("removed");
+    let text = workshop.succeeds(&["weights", "scene.toml", "--at", "0,0", "--at=0.5,-0.25", "-o", "-"]);
+    let lines: Vec<serde_json::Value> = text.lines().map(|l| serde_json::from_str(l).expect("JSON")).collect();
+    assert_eq!(lines.len(), 2);
+    assert!((lines[0]["weights"][0].as_f64().expect("a number") - 1.0).abs() < 1e-9);
+    assert!((lines[1]["texture_weights"][1].as_f64().expect("a number") - 0.5).abs() < 0.01);
+    let table = workshop.succeeds(&["weights", "scene.toml", "--grid", "3x2", "--provider", "rbf"]);
+    let rows: Vec<&str> = table.lines().collect();
+    assert_eq!((rows.len(), rows[0]), (7, "x,y,w0,w1"));
+}
+
+#[test]
+fn a_new_scene_renders() {
+    let workshop = two();
+    workshop.succeeds(&["new", "cat", "tall.png", "wide.png"]);
+    assert!(workshop.path("cat/tall.png").is_file());
+    workshop.succeeds(&[
+        "render",
+        "cat/scene.toml",
+        "-o",
+        "cat.gif",
+        "--size",
+        "40x30",
+        "--fps",
+        "4",
+        "--quiet",
+    ]);
+    workshop.succeeds(&["show", "cat/scene.toml", "-o", "cat.png"]);
+    assert!(workshop.path("cat.gif").is_file() && workshop.path("cat.png").is_file());
+    let message = workshop.fails(&["new", "cat", "tall.png"], 1);
+    assert!(message.contains("scene.toml exists"), "{message}");
+    workshop.fails(&["new", "dog", "tall.png", "none.png"], 1);
+    assert!(!workshop.path("dog").exists());
+    // Drawings in the folder are used where they are.
+    std::fs::create_dir(workshop.path("bird")).expect("a folder");
+    std::fs::copy(workshop.path("tall.png"), workshop.path("bird/sit.png")).expect("copied");
+    workshop.succeeds(&["new", "bird", "bird/sit.png"]);
+    assert_eq!(std::fs::read_dir(workshop.path("bird")).expect("a folder").count(), 2);
+}
+
+#[test]
+fn progress_is_plain_lines_and_quiet_is_silent() {
+    let workshop = two();
+    let output = workshop.run(&["render", "scene.toml", "-o", "frames"]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(message.contains("12 of 12 frames"), "{message}");
+    let output = workshop.run(&["render", "scene.toml", "-o", "frames", "--quiet"]);
+    assert!(output.stderr.is_empty() && output.stdout.is_empty());
+}
