@@ -46,9 +46,7 @@ pub(super) fn mesh(
 ) -> Result<(CompatibleMesh, f64), PipelineError> {
     let (mesh, _) = triangulate(polygons).map_err(|error| {
         let pose = match &error {
-            TriangulateError::CountsDiffer { pose, .. }
-            | TriangulateError::Holes { pose, .. }
-            | TriangulateError::TooNarrow { pose, .. } => Some(*pose),
+            TriangulateError::CountsDiffer { pose, .. } | TriangulateError::TooNarrow { pose, .. } => Some(*pose),
             _ => None,
         };
         PipelineError::stage(names, pose, error)
