@@ -1,6 +1,7 @@
 //! A character ready to be shown in any pose.
 
-use super::{PipelineError, map_drawings, read_drawings, weight_provider, weighting};
+use super::drawings::{read_drawings, sharpen};
+use super::{PipelineError, map_drawings, weight_provider, weighting};
 use crate::blend::{self, BlendOptions, RigidBlend};
 use crate::input::Drawing;
 use crate::math::Point;
@@ -35,7 +36,7 @@ impl Character {
     pub fn new(scene: &Scene, size: [usize; 2]) -> Result<Self, PipelineError> {
         // The cheap refusals first.
         let weights = weight_provider(scene, None)?;
-        let drawings = read_drawings(scene)?;
+        let mut drawings = read_drawings(scene)?;
         let (mapping, report) = map_drawings(scene, &drawings)?;
         let mut notes = report.notes;
         let blend = RigidBlend::new(&mapping.poses, &blend_options(scene, &mapping))?;
@@ -48,6 +49,7 @@ impl Character {
         }
         let silhouette = Silhouette::new(&mapping);
         let camera = camera(scene, size, &mapping, &blend, weights.as_ref(), &silhouette)?;
+        sharpen(scene, &mut drawings, camera.scale())?;
         let textures = textures(&drawings, camera.scale());
         Ok(Self {
             painter: Painter::new(&mapping, textures, silhouette, camera),

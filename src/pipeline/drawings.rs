@@ -5,8 +5,9 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::PipelineError;
-use crate::input::{BitmapOptions, Drawing, HoleRule, InputError, open_bitmap};
+use crate::input::{BitmapOptions, Drawing, HoleRule, InputError, SvgOptions, open_bitmap, open_svg};
 use crate::math::Point;
+use crate::math::point::bounding_box;
 use crate::outline::{Outline, OutlineError, Ring};
 use crate::scene::{Facing, Holes, Scene};
 
@@ -15,45 +16,71 @@ use crate::scene::{Facing, Holes, Scene};
 /// # Errors
 /// [`PipelineError`] naming the first pose, in the scene's order, whose drawing cannot be used.
 pub fn read_drawings(scene: &Scene) -> Result<Vec<Drawing>, PipelineError> {
-    let paths: Vec<_> = (0..scene.poses.len())
-        .map(|pose| scene.source_path(pose))
-        .collect::<Result<_, _>>()?;
-    let read: Vec<Result<Drawing, InputError>> = paths
-        .par_iter()
-        .zip(&scene.poses)
-        .map(|(path, pose)| {
-            let drawing = read_drawing(path, pose.element.as_deref(), scene)?;
-            match pose.facing {
-                Facing::AsDrawn => Ok(drawing),
-                Facing::Mirrored => mirrored(drawing),
-            }
-        })
+    let read: Vec<Result<Drawing, PipelineError>> = (0..scene.poses.len())
+        .into_par_iter()
+        .map(|pose| read_drawing(scene, pose, None))
         .collect();
-    read.into_iter()
-        .zip(&scene.poses)
-        .map(|(drawing, pose)| {
-            drawing.map_err(|source| PipelineError::Drawing {
-                pose: pose.name.clone(),
-                file: pose.source.clone(),
-                source,
-            })
-        })
-        .collect()
+    read.into_iter().collect()
 }
 
-fn read_drawing(path: &Path, _element: Option<&str>, scene: &Scene) -> Result<Drawing, InputError> {
+/// Draws vector drawings again whose pictures are coarser than frames at `frame_scale` pixels a unit.
+pub(super) fn sharpen(scene: &Scene, drawings: &mut [Drawing], frame_scale: f64) -> Result<(), PipelineError> {
+    let sharper: Vec<Result<(), PipelineError>> = drawings
+        .par_iter_mut()
+        .enumerate()
+        .map(|(pose, drawing)| {
+            if is_svg(&scene.poses[pose].source) && drawing.picture.pixels_per_unit < frame_scale {
+                drawing.picture = read_drawing(scene, pose, Some(frame_scale))?.picture;
+            }
+            Ok(())
+        })
+        .collect();
+    sharper.into_iter().collect()
+}
+
+/// The drawing of pose `pose`; a vector drawing has `pixels_per_unit` in its picture.
+fn read_drawing(scene: &Scene, pose: usize, pixels_per_unit: Option<f64>) -> Result<Drawing, PipelineError> {
+    let path = scene.source_path(pose)?;
+    let said = &scene.poses[pose];
     let holes = match scene.input.holes {
         Holes::Keep => HoleRule::Keep,
         Holes::Fill => HoleRule::Fill,
     };
-    let options = BitmapOptions {
-        threshold: scene.input.threshold,
-        holes,
+    let read = if is_svg(&path) {
+        open_svg(
+            &path,
+            &SvgOptions {
+                element: said.element.clone(),
+                pixels_per_unit,
+                holes,
+            },
+        )
+    } else {
+        open_bitmap(
+            &path,
+            &BitmapOptions {
+                threshold: scene.input.threshold,
+                holes,
+            },
+        )
     };
-    open_bitmap(path, &options)
+    read.and_then(|drawing| match said.facing {
+        Facing::AsDrawn => Ok(drawing),
+        Facing::Mirrored => mirrored(drawing),
+    })
+    .map_err(|source| PipelineError::Drawing {
+        pose: said.name.clone(),
+        file: said.source.clone(),
+        source,
+    })
 }
 
-/// The drawing reflected left to right within its picture.
+fn is_svg(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|suffix| suffix.eq_ignore_ascii_case("svg"))
+}
+
+/// The drawing reflected left to right about the middle of its outline, so that it stays where it is.
 pub(super) fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
     let Drawing {
         outline,
@@ -63,7 +90,8 @@ pub(super) fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
     for row in picture.pixels.chunks_exact_mut(picture.width.max(1)) {
         row.reverse();
     }
-    let axis = mirror_axis(&picture);
+    let axis = mirror_axis(&outline);
+    picture.origin.x = axis - picture.origin.x - picture.width as f64 / picture.pixels_per_unit;
     let reflect = |ring: &Ring| ring.map(|p| reflected(p, axis));
     let degenerate = |_| OutlineError::NoArea { ring: 0 };
     let outer = reflect(outline.outer()).map_err(degenerate)?;
@@ -80,9 +108,9 @@ pub(super) fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
     })
 }
 
-/// Twice the x of the line about which a picture is reflected.
-pub(super) fn mirror_axis(picture: &crate::input::Picture) -> f64 {
-    2.0 * picture.origin.x + picture.width as f64 / picture.pixels_per_unit
+/// Twice the x of the line about which a drawing is reflected.
+pub(super) fn mirror_axis(outline: &Outline) -> f64 {
+    bounding_box(outline.outer().points()).map_or(0.0, |(low, high)| low.x + high.x)
 }
 
 /// A point reflected about the line at half of `axis`.
@@ -110,8 +138,9 @@ mod tests {
             notes: vec![],
         };
         let once = mirrored(drawing.clone()).expect("a drawing");
-        assert_eq!(once.picture.pixels[2], [1; 4]);
-        assert!(once.outline.outer().points().contains(&Point::new(3.0, 2.0)));
+        // The outline is one unit wide, from 1 to 2, and stays there; so does the pixel under it.
+        assert!(once.outline.outer().points().contains(&Point::new(2.0, 2.0)));
+        assert_eq!((once.picture.origin.x, once.picture.pixels[2]), (-1.0, [1; 4]));
         assert_eq!(once.outline.area(), drawing.outline.area());
         let twice = mirrored(once).expect("a drawing");
         assert_eq!(twice.picture, drawing.picture);

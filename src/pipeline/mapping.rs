@@ -155,7 +155,7 @@ fn landmarks(scene: &Scene, drawings: &[Drawing]) -> Result<Vec<Landmark>, Pipel
             let drawing = &drawings[pose];
             let place = match scene.poses[pose].facing {
                 Facing::AsDrawn => *place,
-                Facing::Mirrored => reflected(*place, mirror_axis(&drawing.picture)),
+                Facing::Mirrored => reflected(*place, mirror_axis(&drawing.outline)),
             };
             let (parameter, distance) = measured[pose].nearest(place);
             let largest = LANDMARK_REACH * drawing.outline.diagonal();
