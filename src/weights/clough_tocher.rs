@@ -7,7 +7,7 @@
 //!
 //! Data are nine numbers: value, derivative along x, derivative along y at each of the three corners.
 
-use crate::math::{Matrix, Point};
+use crate::math::Point;
 use crate::mesh::geometry;
 
 /// The ten Bezier ordinates of a cubic on a sub-triangle, at `INDEX[exponent of corner 0][exponent of corner 1]`.
@@ -105,47 +105,94 @@ impl Patch {
     }
 
     /// Corners of sub-triangle `k`.
-    pub(super) fn sub_corners(&self, k: usize) -> [Point; 3] {
+    fn sub_corners(&self, k: usize) -> [Point; 3] {
         let centroid = (self.corners[0] + self.corners[1] + self.corners[2]) / 3.0;
         [self.corners[k], self.corners[(k + 1) % 3], centroid]
     }
 
-    /// Gradient and second derivatives in sub-triangle `k` at its own barycentric coordinates. `directions` are the
-    /// gradients of these coordinates.
-    pub(super) fn derivatives(&self, k: usize, barycentric: [f64; 3], directions: &[Point; 3]) -> (Point, Matrix) {
-        let net = &self.ordinates[k];
-        let mut gradient = Point::zeros();
-        let mut second = Matrix::zeros();
-        for a in 0..3 {
-            let slope: f64 = QUADRATIC
-                .iter()
-                .map(|&m| 3.0 * ordinate(net, raised(m, a)) * quadratic_bernstein(m, barycentric))
-                .sum();
-            gradient += directions[a] * slope;
-            for b in 0..3 {
-                let bend: f64 = LINEAR
-                    .iter()
-                    .zip(barycentric)
-                    .map(|(&m, coordinate)| 6.0 * ordinate(net, raised(raised(m, a), b)) * coordinate)
-                    .sum();
-                second += directions[a] * directions[b].transpose() * bend;
+    /// The second derivatives (xx, xy, yy) at the corners of sub-triangle `k`, between which they are linear.
+    /// `directions` are the gradients of its barycentric coordinates.
+    fn second_derivatives(&self, k: usize, directions: &[Point; 3]) -> [[f64; 3]; 3] {
+        LINEAR.map(|corner| {
+            let mut second = [0.0; 3];
+            for (a, u) in directions.iter().enumerate() {
+                for (b, v) in directions.iter().enumerate() {
+                    let bend = 6.0 * ordinate(&self.ordinates[k], raised(raised(corner, a), b));
+                    second[0] += bend * u.x * v.x;
+                    second[1] += bend * u.x * v.y;
+                    second[2] += bend * u.y * v.y;
+                }
             }
-        }
-        (gradient, second)
+            second
+        })
+    }
+
+    /// The gradient over sub-triangle `k` as six Bezier ordinates of degree two, in the order of [`QUADRATIC`].
+    fn gradient_ordinates(&self, k: usize, directions: &[Point; 3]) -> [Point; 6] {
+        QUADRATIC.map(|exponents| {
+            directions
+                .iter()
+                .enumerate()
+                .map(|(a, direction)| direction * (3.0 * ordinate(&self.ordinates[k], raised(exponents, a))))
+                .sum()
+        })
     }
 }
 
-fn quadratic_bernstein(exponents: [usize; 3], barycentric: [f64; 3]) -> f64 {
-    let multiplicity = if exponents.contains(&2) { 1.0 } else { 2.0 };
-    let powers = exponents
-        .iter()
-        .zip(barycentric)
-        .map(|(&power, coordinate)| match power {
-            0 => 1.0,
-            1 => coordinate,
-            _ => coordinate * coordinate,
-        });
-    multiplicity * powers.product::<f64>()
+/// The energy of the patch as a quadratic form in its nine data: the integral of the squared second derivatives plus
+/// `gradient_weight` times that of the squared gradient. Exact: both are integrals of products of Bezier polynomials.
+pub(super) fn stiffness(corners: [Point; 3], gradient_weight: f64) -> [[f64; 9]; 9] {
+    let basis: [Patch; 9] = std::array::from_fn(|k| {
+        let mut data = [0.0; 9];
+        data[k] = 1.0;
+        Patch::new(corners, &data)
+    });
+    let mut form = [[0.0; 9]; 9];
+    for k in 0..3 {
+        let sub = basis[0].sub_corners(k);
+        let area = geometry::signed_area(sub);
+        let Some(directions) = geometry::barycentric_gradients(sub) else {
+            continue;
+        };
+        let second = basis.each_ref().map(|patch| patch.second_derivatives(k, &directions));
+        let gradient = basis.each_ref().map(|patch| patch.gradient_ordinates(k, &directions));
+        let product = quadratic_products();
+        for i in 0..9 {
+            let weighted: [Point; 6] =
+                std::array::from_fn(|m| (0..6).map(|n| gradient[i][n] * product[m][n]).sum::<Point>());
+            for j in 0..=i {
+                // The integral of a product of linear functions from their corner values.
+                let mut bend = squared(&sum(&second[i]), &sum(&second[j]));
+                for corner in 0..3 {
+                    bend += squared(&second[i][corner], &second[j][corner]);
+                }
+                let slope: f64 = weighted.iter().zip(&gradient[j]).map(|(a, b)| a.dot(b)).sum();
+                form[i][j] += area * (bend / 12.0 + gradient_weight * slope);
+            }
+        }
+    }
+    for i in 0..9 {
+        for j in 0..i {
+            form[j][i] = form[i][j];
+        }
+    }
+    form
+}
+
+fn sum(corners: &[[f64; 3]; 3]) -> [f64; 3] {
+    std::array::from_fn(|part| corners[0][part] + corners[1][part] + corners[2][part])
+}
+
+/// The product of two symmetric matrices summed over their four entries.
+fn squared(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + 2.0 * a[1] * b[1] + a[2] * b[2]
+}
+
+/// The integrals, over a triangle of area 1, of the products of the Bernstein polynomials of degree two.
+fn quadratic_products() -> [[f64; 6]; 6] {
+    // Binomial (m + n over m) for exponents up to two.
+    const CHOOSE: [[f64; 3]; 3] = [[1.0, 1.0, 1.0], [1.0, 2.0, 3.0], [1.0, 3.0, 6.0]];
+    QUADRATIC.map(|m| QUADRATIC.map(|n| (0..3).map(|corner| CHOOSE[m[corner]][n[corner]]).product::<f64>() / 90.0))
 }
 
 /// Which third of the triangle a point is in, and its barycentric coordinates there.
@@ -160,59 +207,15 @@ fn sub_triangle([a, b, c]: [f64; 3]) -> (usize, [f64; 3]) {
     }
 }
 
-/// Six points and weights that integrate degree four exactly over a triangle of area 1 (Dunavant 1985).
-const QUADRATURE: [(f64, f64, f64); 2] = [
-    (0.445948490915965, 0.108103018168070, 0.223381589678011),
-    (0.091576213509771, 0.816847572980459, 0.109951743655322),
-];
-
-/// The energy of the patch as a quadratic form in its nine data: the integral of the squared second derivatives plus
-/// `gradient_weight` times that of the squared gradient.
-pub(super) fn stiffness(corners: [Point; 3], gradient_weight: f64) -> [[f64; 9]; 9] {
-    let basis: Vec<Patch> = (0..9)
-        .map(|k| {
-            let mut data = [0.0; 9];
-            data[k] = 1.0;
-            Patch::new(corners, &data)
-        })
-        .collect();
-    let mut form = [[0.0; 9]; 9];
-    for k in 0..3 {
-        let sub = basis[0].sub_corners(k);
-        let area = geometry::signed_area(sub);
-        let Some(directions) = geometry::barycentric_gradients(sub) else {
-            continue;
-        };
-        for (pair, single, weight) in QUADRATURE {
-            for turn in 0..3 {
-                let mut barycentric = [pair; 3];
-                barycentric[turn] = single;
-                let derivatives: Vec<(Point, Matrix)> = basis
-                    .iter()
-                    .map(|patch| patch.derivatives(k, barycentric, &directions))
-                    .collect();
-                for (row, (gradient, second)) in form.iter_mut().zip(&derivatives) {
-                    for (entry, (other_gradient, other_second)) in row.iter_mut().zip(&derivatives) {
-                        *entry +=
-                            weight * area * (second.dot(other_second) + gradient_weight * gradient.dot(other_gradient));
-                    }
-                }
-            }
-        }
-    }
-    form
-}
-
-/// Where `p` is in the triangle; only for tests of continuity.
-#[cfg(test)]
-fn locate(corners: [Point; 3], p: Point) -> [f64; 3] {
-    geometry::barycentric(corners, p).unwrap_or([1.0, 0.0, 0.0])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::point;
     use proptest::prelude::*;
+
+    fn locate(corners: [Point; 3], p: Point) -> [f64; 3] {
+        geometry::barycentric(corners, p).expect("it has area")
+    }
 
     fn triangle() -> [Point; 3] {
         [[0.1, -0.2], [1.3, 0.2], [0.4, 1.1]].map(Point::from)

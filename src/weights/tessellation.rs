@@ -24,7 +24,7 @@ const GROWTH: f64 = 0.3;
 const GROWTH_START: f64 = 0.5;
 
 /// Cells between a pose and its nearest neighbour.
-const CELLS_TO_NEIGHBOUR: f64 = 4.0;
+const CELLS_TO_NEIGHBOUR: f64 = 8.0;
 
 /// The deepest level of the quadtree: cells of 1/8192 diagonal. Where poses lie closer, the mesh still holds them as
 /// vertices, with longer triangles.
@@ -163,7 +163,7 @@ mod tests {
                 .iter()
                 .map(|&t| geometry::smallest_angle_rad(geometry::corners(&mesh.positions, t)))
                 .fold(f64::INFINITY, f64::min);
-            assert!(smallest.to_degrees() > 8.0, "{}", smallest.to_degrees());
+            assert!(smallest.to_degrees() > 5.0, "{}", smallest.to_degrees());
         }
     }
 }
