@@ -45,7 +45,7 @@ pub fn largest_gap(means_rad: &[f64]) -> Branch {
     order.sort_by(|&a, &b| place_rad[a].total_cmp(&place_rad[b]).then(a.cmp(&b)));
     let gap_rad = |k: usize| {
         let (here, next) = (order[k % count], order[(k + 1) % count]);
-        let whole = if (k + 1) % count == 0 { TAU } else { 0.0 };
+        let whole = if (k + 1).is_multiple_of(count) { TAU } else { 0.0 };
         place_rad[next] - place_rad[here] + whole
     };
     // Cuts are compared by the gaps that follow, and last by whether the first pose comes right after the cut.

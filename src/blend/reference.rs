@@ -32,8 +32,9 @@ pub fn reference_edges(poses: &PoseSet, reference: Reference) -> Result<Vec<Matr
         Reference::Pose(pose) => pose,
         Reference::Canonical => 0,
     };
-    // Written so that NaN fails too.
-    match edges.iter().position(|edge| !(edge.determinant() > 0.0)) {
+    // NaN is not positive either.
+    let is_positive = |edge: &Matrix| edge.determinant() > 0.0;
+    match edges.iter().position(|edge| !is_positive(edge)) {
         Some(triangle) => Err(BlendError::NotPositive {
             pose: poses.names()[named].clone(),
             triangle,

@@ -254,8 +254,9 @@ impl RigidBlend {
             });
         }
         let sum: f64 = weights.iter().sum();
-        // Written so that NaN fails too.
-        if !((sum - 1.0).abs() <= WEIGHT_SUM_TOLERANCE) {
+        // NaN does not sum to 1 either.
+        let sums_to_one = (sum - 1.0).abs() <= WEIGHT_SUM_TOLERANCE;
+        if !sums_to_one {
             return Err(BlendError::BadWeights { sum });
         }
         normalised.clear();

@@ -100,7 +100,8 @@ impl SparseCholesky {
             values,
         };
         // NaN passes the pivot test of the factorisation.
-        match (0..size).find(|&column| !(factored.values[factored.column_starts[column]] > 0.0)) {
+        let is_positive = |column: usize| factored.values[factored.column_starts[column]] > 0.0;
+        match (0..size).find(|&column| !is_positive(column)) {
             Some(pivot) => Err(SolveError::NotPositiveDefinite { size, pivot }),
             None => Ok(factored),
         }

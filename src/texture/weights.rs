@@ -47,7 +47,7 @@ pub fn texture_weights(weights: &[f64], sharpness: f64) -> Result<Vec<f64>, Text
     let mut limited = Vec::new();
     limit_weights(weights, &mut limited);
     // A positive weight can be so small that its square, and so its step, underflows.
-    if !(limited.iter().sum::<f64>() > 0.0) {
+    if limited.iter().all(|&weight| weight == 0.0) {
         return Err(TextureError::BadWeights(weights.to_vec()));
     }
     let sharpened: Vec<f64> = limited

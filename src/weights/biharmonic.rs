@@ -20,7 +20,7 @@
 //! is a number per squared edge. Here the edge is fixed as 1/32 of the layout's diagonal: `w = 32^2 epsilon` in units
 //! where the diagonal is 1. Weights level out over the distance `1 / sqrt(w)`: one diagonal for the default 1e-3.
 //!
-//! Cost: some 2,500 vertices for a handful of poses; about 50 ms to build, microseconds to ask.
+//! Cost: some 2,000 vertices for a handful of poses, under 100 ms to build and microseconds to ask.
 
 use super::layout::Layout;
 use super::surface::Surface;

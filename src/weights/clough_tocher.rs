@@ -157,23 +157,15 @@ pub(super) fn stiffness(corners: [Point; 3], gradient_weight: f64) -> [[f64; 9];
         let second = basis.each_ref().map(|patch| patch.second_derivatives(k, &directions));
         let gradient = basis.each_ref().map(|patch| patch.gradient_ordinates(k, &directions));
         let product = quadratic_products();
-        for i in 0..9 {
-            let weighted: [Point; 6] =
-                std::array::from_fn(|m| (0..6).map(|n| gradient[i][n] * product[m][n]).sum::<Point>());
-            for j in 0..=i {
+        for ((row, bends), slopes) in form.iter_mut().zip(&second).zip(&gradient) {
+            let weighted = product.map(|row| row.iter().zip(slopes).map(|(p, slope)| slope * *p).sum::<Point>());
+            for ((entry, other_bends), other_slopes) in row.iter_mut().zip(&second).zip(&gradient) {
                 // The integral of a product of linear functions from their corner values.
-                let mut bend = squared(&sum(&second[i]), &sum(&second[j]));
-                for corner in 0..3 {
-                    bend += squared(&second[i][corner], &second[j][corner]);
-                }
-                let slope: f64 = weighted.iter().zip(&gradient[j]).map(|(a, b)| a.dot(b)).sum();
-                form[i][j] += area * (bend / 12.0 + gradient_weight * slope);
+                let corners: f64 = bends.iter().zip(other_bends).map(|(a, b)| squared(a, b)).sum();
+                let bend = (corners + squared(&sum(bends), &sum(other_bends))) / 12.0;
+                let slope: f64 = weighted.iter().zip(other_slopes).map(|(a, b)| a.dot(b)).sum();
+                *entry += area * (bend + gradient_weight * slope);
             }
-        }
-    }
-    for i in 0..9 {
-        for j in 0..i {
-            form[j][i] = form[i][j];
         }
     }
     form

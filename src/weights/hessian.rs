@@ -6,6 +6,8 @@
 //! of the energy itself as the mesh is refined, however uneven its triangles are, and what is found is the function that
 //! is later evaluated: nothing has to be recovered. Values at the poses are eliminated.
 
+use std::collections::BTreeMap;
+
 use super::WeightError;
 use super::clough_tocher;
 use super::surface::Jet;
@@ -41,14 +43,21 @@ pub(super) fn minimise(mesh: &Tessellation, pose_count: usize, gradient_weight: 
     };
     let mut system = Triplets::new(unknown_count, unknown_count);
     let mut right = vec![vec![0.0; pose_count]; unknown_count];
+    // Most triangles of a graded mesh are the same few, exactly.
+    let mut forms = BTreeMap::new();
     for &triangle in &mesh.triangles {
-        let form = clough_tocher::stiffness(geometry::corners(&mesh.positions, triangle), gradient_weight);
-        let scale = |index: usize| {
-            if index % 3 == 0 {
-                1.0
-            } else {
-                sizes[triangle[index / 3]].recip()
-            }
+        let corners = geometry::corners(&mesh.positions, triangle);
+        let shape = geometry::edge_matrix(corners)
+            .as_slice()
+            .iter()
+            .map(|x| x.to_bits())
+            .collect::<Vec<_>>();
+        let form = forms
+            .entry(shape)
+            .or_insert_with(|| clough_tocher::stiffness(corners, gradient_weight));
+        let scale = |index: usize| match index % 3 {
+            0 => 1.0,
+            _ => sizes[triangle[index / 3]].recip(),
         };
         for (row, entries) in form.iter().enumerate() {
             let to = unknown(triangle[row / 3], row % 3);

@@ -154,11 +154,6 @@ fn the_default_energy_converges() {
             worst = worst.max((x - y).abs());
         }
     }
-    println!(
-        "vertices {} {} worst {worst}",
-        coarse.vertex_count(),
-        fine.vertex_count()
-    );
     assert!(worst < 8e-3, "{worst}");
 }
 
