@@ -14,7 +14,7 @@
 //! - Its last formula writes `R(alpha_{tau,i}(w))`; the subscript `i` is a misprint, the angle is the blended one.
 //! - The sum over triangles is weighted by area, so that the result converges as the mesh is refined.
 //! - By default no pose is the base: each triangle has a reference of its own, the mean of its metric over the poses
-//!   ([`reference`]), and the result depends neither on a base nor on the order of the poses. The references do not
+//!   ([`mod@reference`]), and the result depends neither on a base nor on the order of the poses. The references do not
 //!   fit together in the plane and need not: the energy only needs each triangle's shape.
 //! - Stretches can be blended through their logarithms, which stays positive for all weights.
 //! - Triangles that come out inverted are counted and reported.
