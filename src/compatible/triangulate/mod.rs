@@ -37,7 +37,7 @@ mod tests;
 
 use super::CompatibleMesh;
 use super::editable::EditableMesh;
-use crate::math::Point;
+use crate::math::{Point, point};
 use crate::mesh::{TopologyError, geometry};
 use crate::outline::Outline;
 use ear_clipping::triangulate_polygon;
@@ -181,7 +181,7 @@ impl Division {
                     .extend(triangles.into_iter().map(|t| t.map(|k| piece[k])));
                 continue;
             }
-            let diagonals = line_of_sight::largest_partition(piece.len(), &common);
+            let diagonals = line_of_sight::largest_partition(piece.len(), &clear_pairs(&sights, common));
             if diagonals.is_empty() {
                 self.solve_stuck(&piece, &sights)?;
             } else {
@@ -296,6 +296,31 @@ fn common_pairs(sights: &[Sight]) -> Relation {
     let mut common = Relation::full(sights[0].points.len());
     for sight in sights {
         common.intersect(&sight.visible_pairs());
+    }
+    common
+}
+
+/// A diagonal is clear if no other vertex is nearer to it than this fraction of its length. A diagonal along a straight
+/// side, whose vertices are collinear up to rounding, may have line of sight; the face it cuts off has no area.
+const CLEAR: f64 = 1e-9;
+
+/// The pairs that stay clear of all other vertices, polygon edges included.
+fn clear_pairs(sights: &[Sight], mut common: Relation) -> Relation {
+    let count = sights[0].points.len();
+    for i in 0..count {
+        for j in i + 2..count {
+            let is_clear = |points: &[Point]| {
+                (0..count).filter(|&k| k != i && k != j).all(|k| {
+                    let distance = point::nearest_on_segment(points[k], points[i], points[j]).1;
+                    distance > CLEAR * (points[j] - points[i]).norm()
+                        || points[k] == points[i]
+                        || points[k] == points[j]
+                })
+            };
+            if (i, j) != (0, count - 1) && common.get(i, j) && !sights.iter().all(|sight| is_clear(&sight.points)) {
+                common.clear(i, j);
+            }
+        }
     }
     common
 }

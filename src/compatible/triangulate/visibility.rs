@@ -40,6 +40,11 @@ impl Relation {
         self.bits[b * self.count + a] = true;
     }
 
+    pub(super) fn clear(&mut self, a: usize, b: usize) {
+        self.bits[a * self.count + b] = false;
+        self.bits[b * self.count + a] = false;
+    }
+
     pub(super) fn intersect(&mut self, other: &Relation) {
         for (mine, theirs) in self.bits.iter_mut().zip(&other.bits) {
             *mine &= theirs;
