@@ -49,7 +49,7 @@ impl Progress {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         match &self.kind {
             Kind::Silent => {}
-            Kind::Lines if done % FRAMES_A_LINE == 0 || done == self.total => {
+            Kind::Lines if done.is_multiple_of(FRAMES_A_LINE) || done == self.total => {
                 let _ = writeln!(std::io::stderr(), "{done} of {} frames", self.total);
             }
             Kind::Lines => {}

@@ -6,7 +6,7 @@
 //! 2. Parse with usvg: groups, transforms, `use`, CSS, shapes and strokes come out as paths. Nothing outside the file is
 //!    ever opened, whatever it refers to; embedded images and text are not drawn and are reported.
 //! 3. Unite what is drawn, in the element that is asked for or in all (module `svg_silhouette`).
-//! 4. Rasterise the same with resvg.
+//! 4. Rasterise the whole drawing around that outline with resvg: an element names a shape, not what is painted on it.
 //!
 //! Coordinates are the user units of the file's `viewBox`, at usvg's single precision (1e-7 of their size).
 
@@ -96,7 +96,9 @@ pub fn read_svg(bytes: &[u8], options: &SvgOptions) -> Result<Drawing, InputErro
     };
     let (outline, mut notes) = silhouette(&nodes, to_user, options.holes)?;
     note_undrawn(&document, &mut notes);
-    let picture = rasterise(&nodes, to_user, &outline, options.pixels_per_unit)?;
+    // The element says whose outline is meant; the drawing is everything in the file.
+    let everything: Vec<&usvg::Node> = tree.root().children().iter().collect();
+    let picture = rasterise(&everything, to_user, &outline, options.pixels_per_unit)?;
     Ok(Drawing {
         outline,
         picture,

@@ -71,7 +71,7 @@ fn read_drawing(scene: &Scene, pose: usize, pixels_per_unit: Option<f64>) -> Res
     .map_err(|source| PipelineError::Drawing {
         pose: said.name.clone(),
         file: said.source.clone(),
-        source,
+        source: Box::new(source),
     })
 }
 

@@ -14,7 +14,7 @@ use crate::weights::WeightError;
 pub enum PipelineError {
     /// The scene file is wrong.
     #[error(transparent)]
-    Scene(#[from] SceneError),
+    Scene(Box<SceneError>),
     /// A drawing cannot be used.
     #[error("pose '{pose}' ({}): {source}", file.display())]
     Drawing {
@@ -23,7 +23,7 @@ pub enum PipelineError {
         /// Its file.
         file: PathBuf,
         /// What is wrong.
-        source: InputError,
+        source: Box<InputError>,
     },
     /// The poses have different numbers of holes.
     #[error(
@@ -112,6 +112,12 @@ pub enum PipelineError {
     /// The textures cannot be weighted.
     #[error("texture: {0}")]
     Texture(#[from] TextureError),
+}
+
+impl From<SceneError> for PipelineError {
+    fn from(error: SceneError) -> Self {
+        Self::Scene(Box::new(error))
+    }
 }
 
 impl PipelineError {

@@ -35,7 +35,6 @@ pub fn weight_provider(scene: &Scene, provider: Option<Provider>) -> Result<Box<
                         at: pseudo.at.clone(),
                     })
                     .collect(),
-                ..RbfOptions::default()
             };
             RbfWeights::new(&places, &options).map(|w| Box::new(w) as _)
         }
@@ -63,8 +62,8 @@ pub fn checked_weights(given: &[f64], names: &[String]) -> Result<Vec<f64>, Pipe
         )));
     }
     let sum: f64 = given.iter().sum();
-    // Written so that an overflow fails too.
-    if !((sum - 1.0).abs() <= SUM_TOLERANCE) {
+    // The sum of finite weights may still overflow.
+    if !sum.is_finite() || (sum - 1.0).abs() > SUM_TOLERANCE {
         return Err(PipelineError::BadWeights(format!(
             "the weights sum to {sum}, but must sum to 1 (within {SUM_TOLERANCE:e}); divide each by {sum}"
         )));

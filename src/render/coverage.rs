@@ -135,12 +135,12 @@ impl Differences {
         // Across several pixels: a trapezoid in the first and last, constant growth between.
         let growth = height / (right - left);
         let mut before = 0.0;
-        for pixel in first..last {
+        for (pixel, difference) in row.iter_mut().enumerate().take(last).skip(first) {
             // The integral of the height accumulated up to x, over this pixel.
             let (from, to) = (left.max(pixel as f64), right.min((pixel + 1) as f64));
             let (low, high) = (growth * (from - left), growth * (to - left));
             let area = 0.5 * (low + high) * (to - from) + high * ((pixel + 1) as f64 - to);
-            row[pixel] += (area - before) as f32;
+            *difference += (area - before) as f32;
             before = area;
         }
         if last < row.len() {

@@ -223,7 +223,7 @@ impl Reader<'_> {
     fn place(&self, value: &Spanned<Vec<f64>>, key: &str, dimension: Option<usize>) -> Checked<Vec<f64>> {
         let at = value.span().start;
         let place = value.get_ref();
-        if let Some(bad) = place.iter().find(|v| !(v.abs() <= LARGEST_PLACE)) {
+        if let Some(bad) = place.iter().find(|v| !v.is_finite() || v.abs() > LARGEST_PLACE) {
             return Err(self.fail(
                 at,
                 SceneProblem::BadNumber {
@@ -522,7 +522,10 @@ impl Reader<'_> {
         let Some([x, y]) = numbers.as_deref() else {
             return Err(self.fail(start, SceneProblem::Format(format!("{key} must be a point [x, y]"))));
         };
-        if let Some(bad) = [*x, *y].into_iter().find(|v| !(v.abs() <= Ring::LARGEST_COORDINATE)) {
+        if let Some(bad) = [*x, *y]
+            .into_iter()
+            .find(|v| !v.is_finite() || v.abs() > Ring::LARGEST_COORDINATE)
+        {
             return Err(self.fail(
                 start,
                 SceneProblem::BadNumber {
@@ -543,7 +546,7 @@ impl Reader<'_> {
                 for (index, key) in keys.get_ref().iter().enumerate() {
                     let start = key.span().start;
                     let written = key.get_ref();
-                    if !(written.time.abs() <= LATEST_TIME) {
+                    if !written.time.is_finite() || written.time.abs() > LATEST_TIME {
                         return Err(self.fail(
                             start,
                             SceneProblem::BadNumber {

@@ -136,11 +136,11 @@ fn groups_clips_uses_and_styles_are_resolved() {
 }
 
 #[test]
-fn an_element_is_taken_alone() {
+fn an_element_gives_the_outline_and_everything_the_pixels() {
     let text = svg(r#"<rect width="100" height="100" fill="white"/><g id="body"><circle cx="50" cy="50" r="10"/></g>"#);
     let body = element(&text, "body").expect("it is there");
     close(body.outline.area(), 100.0 * std::f64::consts::PI, 0.5);
-    assert_eq!(body.picture.pixels[0], [0; 4]);
+    assert_eq!(body.picture.pixels[0], [255; 4]);
     let error = element(&text, "bodyy").expect_err("it is not there");
     assert!(
         matches!(&error, InputError::NoSuchElement { id, known } if id == "bodyy" && known == &["body"]),

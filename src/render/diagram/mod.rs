@@ -84,7 +84,7 @@ pub fn draw(
 
 /// A clear colour for a pose: hues spread evenly, dark ones and light ones in turn.
 fn pose_colour(pose: usize, count: usize) -> Color {
-    let light = if pose % 2 == 0 { 0.48 } else { 0.60 };
+    let light = if pose.is_multiple_of(2) { 0.48 } else { 0.60 };
     hue(pose as f64 / count.max(1) as f64, light)
 }
 
