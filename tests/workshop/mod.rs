@@ -7,40 +7,40 @@ use std::process::{Command, Output};
 const SIDE: u32 = 40;
 
 /// A folder that vanishes at the end.
-pub struct Workshop {
+pub(crate) struct Workshop {
     folder: tempfile::TempDir,
 }
 
 #[allow(dead_code, reason = "each test program uses its own part")]
 impl Workshop {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             folder: tempfile::tempdir().expect("a folder"),
         }
     }
 
-    pub fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
-    pub fn file(&self, name: &str, bytes: &[u8]) {
+    pub(crate) fn file(&self, name: &str, bytes: &[u8]) {
         std::fs::write(self.path(name), bytes).expect("written");
     }
 
     /// A scene file: the version, then `text` from line 2.
-    pub fn scene(&self, text: &str) {
+    pub(crate) fn scene(&self, text: &str) {
         self.file("scene.toml", format!("version = 1\n{text}").as_bytes());
     }
 
     /// A picture of 40 x 40 pixels.
-    pub fn picture(&self, name: &str, pixel: impl Fn(u32, u32) -> [u8; 4]) {
+    pub(crate) fn picture(&self, name: &str, pixel: impl Fn(u32, u32) -> [u8; 4]) {
         image::RgbaImage::from_fn(SIDE, SIDE, |x, y| image::Rgba(pixel(x, y)))
             .save(self.path(name))
             .expect("written");
     }
 
     /// A scene of a tall red and a wide blue box at two places, with `more` from line 10.
-    pub fn two_poses(&self, tall_at: &str, wide_at: &str, more: &str) {
+    pub(crate) fn two_poses(&self, tall_at: &str, wide_at: &str, more: &str) {
         let within = |v: u32, low: u32, high: u32| (low..high).contains(&v);
         self.picture("tall.png", |x, y| {
             if within(x, 12, 28) && within(y, 4, 36) {
@@ -62,7 +62,7 @@ impl Workshop {
         ));
     }
 
-    pub fn run(&self, arguments: &[&str]) -> Output {
+    pub(crate) fn run(&self, arguments: &[&str]) -> Output {
         Command::new(env!("CARGO_BIN_EXE_inbetween"))
             .args(arguments)
             .current_dir(self.folder.path())
@@ -71,7 +71,7 @@ impl Workshop {
     }
 
     /// Standard output of a run that must succeed.
-    pub fn succeeds(&self, arguments: &[&str]) -> String {
+    pub(crate) fn succeeds(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {message}");
@@ -79,7 +79,7 @@ impl Workshop {
     }
 
     /// Standard error of a run that must fail with this code.
-    pub fn fails(&self, arguments: &[&str], code: i32) -> String {
+    pub(crate) fn fails(&self, arguments: &[&str], code: i32) -> String {
         let output = self.run(arguments);
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
@@ -88,7 +88,7 @@ impl Workshop {
     }
 
     /// Every file in the folder.
-    pub fn listing(&self) -> Vec<String> {
+    pub(crate) fn listing(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.folder.path()).expect("a folder");
         let mut names: Vec<String> = entries
             .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
@@ -100,7 +100,7 @@ impl Workshop {
 
 /// A PNG file that ends where its pixels should start.
 #[allow(dead_code, reason = "each test program uses its own part")]
-pub fn png_that_claims(width: u32, height: u32) -> Vec<u8> {
+pub(crate) fn png_that_claims(width: u32, height: u32) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgba);
