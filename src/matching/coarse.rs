@@ -2,7 +2,7 @@
 
 use super::curve::Curve;
 use super::elastic::{MismatchTable, Path};
-use super::feature::{SalientPoint, natural_start, salient_points};
+use super::feature::{SalientPoint, salient_points};
 use super::monotone::CyclicMap;
 use super::start::{distinct_minima, path_from_each_start};
 use crate::outline::{Ring, RingError};
@@ -17,8 +17,6 @@ pub(super) struct Form {
     pub(super) curve: Curve,
     /// Its salient points.
     pub(super) salient: Vec<SalientPoint>,
-    /// A parameter that depends on the shape only, not on the ring's first point.
-    pub(super) start: f64,
 }
 
 impl Form {
@@ -34,13 +32,12 @@ impl Form {
 
     fn of(curve: Curve) -> Self {
         let salient = salient_points(&curve);
-        let start = natural_start(&curve, &salient);
-        Self { curve, salient, start }
+        Self { curve, salient }
     }
 
-    /// `count` parameters in even steps from the natural start on.
+    /// `count` parameters in even steps from the curve's own start on.
     pub(super) fn even_parameters(&self, count: usize) -> Vec<f64> {
-        (0..count).map(|k| self.start + k as f64 / count as f64).collect()
+        (0..count).map(|k| self.curve.start + k as f64 / count as f64).collect()
     }
 }
 

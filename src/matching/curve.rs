@@ -20,6 +20,8 @@ pub(super) type Turning = [f32; WINDOWS.len()];
 pub(super) struct Curve {
     arc: ArcLength,
     fine: Vec<Point>,
+    /// The parameter of the vertex farthest from the centroid: it depends on the shape, not on the ring's first point.
+    pub(super) start: f64,
 }
 
 impl Curve {
@@ -30,11 +32,19 @@ impl Curve {
         for (a, b) in ring.edges() {
             centre += (a + b) * (0.5 * (b - a).norm() / perimeter);
         }
-        let arc = ArcLength::new(&ring.map(|p| (p - centre) / perimeter)?);
+        let scaled = ring.map(|p| (p - centre) / perimeter)?;
+        let arc = ArcLength::new(&scaled);
+        let mut farthest = (0, 0.0);
+        for (vertex, p) in scaled.points().iter().enumerate() {
+            if p.norm_squared() > farthest.1 {
+                farthest = (vertex, p.norm_squared());
+            }
+        }
+        let start = arc.vertex_parameters()[farthest.0];
         let fine = (0..FINE_SAMPLES)
             .map(|k| arc.at(k as f64 / FINE_SAMPLES as f64))
             .collect();
-        Ok(Self { arc, fine })
+        Ok(Self { arc, fine, start })
     }
 
     /// The curve seen in a mirror, run so that its area keeps its sign: its parameter `t` is this one's `1 - t`.
@@ -56,11 +66,6 @@ impl Curve {
             let (behind, ahead) = (self.arc.at(t - window), self.arc.at(t + window));
             weight * angle::between(here - behind, ahead - here) as f32
         })
-    }
-
-    /// The direction of the curve at `t`, over the length of the finest window.
-    pub(super) fn tangent(&self, t: f64) -> Point {
-        self.arc.at(t + WINDOWS[0].0) - self.arc.at(t - WINDOWS[0].0)
     }
 
     /// The parameter, in `[t - reach, t + reach]`, of the point nearest to `p`; not wrapped.

@@ -289,3 +289,6 @@ fn step_lengths(parameter: impl Fn(usize) -> f64, count: usize, turns: usize) ->
             .collect()
     })
 }
+
+#[cfg(test)]
+mod tests;

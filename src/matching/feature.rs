@@ -78,21 +78,6 @@ pub(super) fn salient_points(curve: &Curve) -> Vec<SalientPoint> {
     found
 }
 
-/// The parameter of the most salient point; that of the point farthest from the centroid if there is none.
-pub(super) fn natural_start(curve: &Curve, salient: &[SalientPoint]) -> f64 {
-    let order = |a: &&SalientPoint, b: &&SalientPoint| {
-        a.scale
-            .total_cmp(&b.scale)
-            .then(a.curvature.abs().total_cmp(&b.curvature.abs()))
-    };
-    if let Some(point) = salient.iter().max_by(order) {
-        return point.parameter;
-    }
-    let distance = |k: &usize| curve.at(*k as f64 / SAMPLES as f64).norm();
-    let farthest = (0..SAMPLES).max_by(|a, b| distance(a).total_cmp(&distance(b)));
-    farthest.unwrap_or(0) as f64 / SAMPLES as f64
-}
-
 fn cyclic_distance(a: usize, b: usize) -> usize {
     let gap = a.abs_diff(b);
     gap.min(SAMPLES - gap)

@@ -3,7 +3,7 @@
 //! [`match_rings`] takes N closed curves and landmarks and returns a [`Correspondence`].
 //!
 //! - `curve`: a ring with place and size taken out; turning over several windows.
-//! - `feature`: salient points in curvature scale space; they give each curve a start that depends on its shape only.
+//! - `feature`: salient points in curvature scale space, which explain a match.
 //! - `elastic`, `start`: dynamic programming over turning and stretch, over all cyclic starts.
 //! - `coarse`, `pair`, `thin_plate`, `monotone`: from coarse candidates to the match of a pose to the reference.
 //! - `n_way`, `landmark`: all poses, guided by landmarks.

@@ -3,7 +3,7 @@
 //! Rings and landmarks -> [`RingMatch`].
 //!
 //! 1. Measure every outline; check that landmarks come in one cyclic order on all poses.
-//! 2. Choose the reference, unless told: the pose with the least sum of coarse matching costs to all others.
+//! 2. Choose the reference, unless told: the first pose, or the one with clearly the least sum of coarse matching costs.
 //! 3. A landmark that the reference lacks is carried there from the poses that have it, one landmark after the other.
 //! 4. Match every pose to the reference (module `pair`), in parallel.
 //!
@@ -19,17 +19,29 @@ use super::landmark::{Landmark, validated};
 use super::monotone::CyclicMap;
 use super::pair::{PairMatch, Pin, Reference};
 use super::{Correspondence, MatchError, SalientPoint};
+use crate::math::Point;
+use crate::math::point::cross;
 use crate::outline::Ring;
 
-/// Samples of the coarse matches that choose the reference and look for mirrored poses.
+/// Samples of the coarse matches that choose the reference.
 const OVERVIEW_SAMPLES: usize = 64;
-/// A pose looks mirrored if its reflection matches at less than this share of its own cost.
-const MIRROR_MARGIN: f32 = 0.75;
+/// Samples of the coarse matches that look for mirrored poses.
+const MIRROR_SAMPLES: usize = 96;
+/// How many of them are looked at.
+const MIRROR_CANDIDATES: usize = 3;
+/// Another pose than the first becomes the reference if its sum of costs is below this share of the first's: artists
+/// draw the neutral pose first.
+const CENTRAL_MARGIN: f32 = 0.8;
+/// A reflection whose elastic cost exceeds the pose's own by more than this factor is not the better match.
+const MIRROR_COST_MARGIN: f32 = 1.05;
+/// A pose looks mirrored if its reflection is nearer to the reference by this factor.
+const MIRROR_MARGIN: f64 = 0.7;
 
 /// How outlines are matched.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MatchOptions {
-    /// The pose that all others are matched to. Default: the one with the least cost to all others.
+    /// The pose that all others are matched to. Default: the first, or the one that is
+    /// clearly the most alike to all others.
     pub reference: Option<usize>,
     /// Whether poses are also compared with their reflections. Default: they are.
     pub mirror_hints: MirrorHints,
@@ -72,6 +84,8 @@ pub struct PoseMatch {
     pub mismatch: Vec<f64>,
     /// Whether its reflection would match clearly better.
     pub looks_mirrored: bool,
+    /// How much worse its reflection fits the reference than itself, as a ratio of distances; 1 for the reference, or if not looked for.
+    pub reflection_ratio: f64,
     /// Its salient points.
     pub salient: Vec<SalientPoint>,
     /// The landmarks that its match goes through, by number.
@@ -131,9 +145,11 @@ pub fn match_rings(rings: &[Ring], landmarks: &[Landmark], options: &MatchOption
     let poses = (0..count)
         .into_par_iter()
         .map(|pose| {
-            let looks_mirrored = pose != reference
-                && options.mirror_hints == MirrorHints::Look
-                && looks_mirrored(&forms[reference], &rings[pose], &forms[pose]);
+            let reflection_ratio = if pose == reference || options.mirror_hints == MirrorHints::Skip {
+                1.0
+            } else {
+                reflection_ratio(&forms[reference], &rings[pose], &forms[pose])
+            };
             let (cost, mismatch) = match &matches[pose] {
                 Some(matched) => (matched.cost, matched.mismatch.clone()),
                 None => (0.0, vec![0.0; frame.len()]),
@@ -141,7 +157,8 @@ pub fn match_rings(rings: &[Ring], landmarks: &[Landmark], options: &MatchOption
             PoseMatch {
                 cost,
                 mismatch,
-                looks_mirrored,
+                looks_mirrored: reflection_ratio < MIRROR_MARGIN,
+                reflection_ratio,
                 salient: forms[pose].salient.clone(),
                 landmarks: (0..given.len()).filter(|k| given[*k].at[pose].is_some()).collect(),
             }
@@ -154,7 +171,7 @@ pub fn match_rings(rings: &[Ring], landmarks: &[Landmark], options: &MatchOption
     })
 }
 
-/// The pose with the least sum of coarse costs to the others; the first such pose.
+/// The first pose, unless another's sum of coarse costs to all others is clearly less; then the one with the least.
 fn most_central(forms: &[Form]) -> usize {
     let count = forms.len();
     if count < 3 {
@@ -173,54 +190,96 @@ fn most_central(forms: &[Form]) -> usize {
         sums[*i] += cost;
         sums[*j] += cost;
     }
-    (0..count).fold(0, |best, pose| if sums[pose] < sums[best] { pose } else { best })
+    let best = (0..count).fold(0, |best, pose| if sums[pose] < sums[best] { pose } else { best });
+    if sums[best] < CENTRAL_MARGIN * sums[0] { best } else { 0 }
 }
 
-fn looks_mirrored(reference: &Form, ring: &Ring, form: &Form) -> bool {
-    let best = |other: &Form| {
-        let matches = coarse_matches(reference, other, OVERVIEW_SAMPLES, 1);
-        matches.first().map_or(f32::INFINITY, |matched| matched.cost)
+/// How much worse the reflection of a pose fits the reference than the pose itself: the ratio of what is left of the
+/// outlines' distance when one is moved, turned and scaled onto the other as its coarse match says; at least 1 where the
+/// reflection costs clearly more in the match itself, since a bent symmetric form may be nearer to its reflection.
+///
+/// Facing left or right is a matter of the whole form, which the elastic cost alone, mostly fine detail, hardly shows.
+fn reflection_ratio(reference: &Form, ring: &Ring, form: &Form) -> f64 {
+    let Ok(mirrored) = Form::mirrored(ring) else {
+        return 1.0;
     };
-    Form::mirrored(ring).is_ok_and(|mirrored| best(&mirrored) < MIRROR_MARGIN * best(form))
+    let (own, reflected) = (best_fit(reference, form), best_fit(reference, &mirrored));
+    // Two equal forms leave nothing, whichever way.
+    let ratio = if own.distance > 1e-9 {
+        reflected.distance / own.distance
+    } else {
+        1.0
+    };
+    if reflected.cost > MIRROR_COST_MARGIN * own.cost {
+        ratio.max(1.0)
+    } else {
+        ratio
+    }
 }
 
-/// Gives the reference every landmark that it lacks: the mean of where the matches of the poses that have it put it.
+/// The least distance over some matches, and the least elastic cost.
+struct Fit {
+    distance: f64,
+    cost: f32,
+}
+
+/// The least root mean square distance, relative to the second form's size, between the points that any of the best
+/// coarse matches pairs, over all similarities.
+fn best_fit(first: &Form, second: &Form) -> Fit {
+    let matches = coarse_matches(first, second, MIRROR_SAMPLES, MIRROR_CANDIDATES);
+    let cost = matches.first().map_or(f32::INFINITY, |matched| matched.cost);
+    let distance = matches
+        .iter()
+        .map(|matched| {
+            let pairs: Vec<(Point, Point)> = first
+                .even_parameters(MIRROR_SAMPLES)
+                .into_iter()
+                .map(|t| (first.curve.at(t), second.curve.at(matched.map.at(t))))
+                .collect();
+            let count = pairs.len() as f64;
+            let centre = pairs.iter().fold((Point::zeros(), Point::zeros()), |c, (a, b)| {
+                (c.0 + a / count, c.1 + b / count)
+            });
+            let (mut aa, mut bb, mut ab) = (0.0, 0.0, Point::zeros());
+            for (a, b) in pairs {
+                let (a, b) = (a - centre.0, b - centre.1);
+                aa += a.norm_squared();
+                bb += b.norm_squared();
+                ab += Point::new(a.dot(&b), cross(a, b));
+            }
+            // The best similarity is the complex number `ab / aa`.
+            (1.0 - ab.norm_squared() / (aa * bb)).max(0.0).sqrt()
+        })
+        .fold(f64::INFINITY, f64::min);
+    Fit { distance, cost }
+}
+
+/// Gives the reference every landmark that it lacks and at least two poses have: the mean of where the matches of those
+/// poses put it. A landmark of fewer poses ties nothing together.
 fn carry_to_reference(forms: &[Form], reference: usize, landmarks: &mut [Landmark]) -> Result<(), MatchError> {
-    while let Some(missing) = landmarks.iter().position(|l| l.at[reference].is_none()) {
-        let having: Vec<usize> = (0..forms.len())
-            .filter(|pose| landmarks[missing].at[*pose].is_some())
+    for missing in 0..landmarks.len() {
+        let having: Vec<(usize, f64)> = (0..forms.len())
+            .filter_map(|pose| Some((pose, landmarks[missing].at[pose]?)))
             .collect();
-        // A landmark of one pose, or of none, ties nothing together.
-        if having.len() < 2 {
-            landmarks[missing].at.fill(None);
-            landmarks[missing].at[reference] = Some(f64::NAN);
+        if landmarks[missing].at[reference].is_some() || having.len() < 2 {
             continue;
         }
-        let settled: Vec<Landmark> = landmarks
+        let wanted: Vec<usize> = having.iter().map(|(pose, _)| *pose).collect();
+        let (frame, matches) = match_some(forms, reference, landmarks, &wanted)?;
+        let places: Vec<f64> = having
             .iter()
-            .filter(|l| l.at[reference].is_some_and(f64::is_finite))
-            .cloned()
+            .filter_map(|(pose, t)| {
+                let matched = matches[*pose].as_ref()?;
+                Some(CyclicMap::through(matched.parameters.clone(), frame.clone()).at(*t))
+            })
             .collect();
-        let (frame, matches) = match_some(forms, reference, &settled, &having)?;
-        let mut first = None;
-        let mut offset = 0.0;
-        for pose in &having {
-            let (Some(matched), Some(t)) = (&matches[*pose], landmarks[missing].at[*pose]) else {
-                continue;
-            };
-            let back = CyclicMap::through(matched.parameters.clone(), frame.clone());
-            let place = back.at(t);
-            let anchor = *first.get_or_insert(place);
-            // The mean of nearby places of a circle, relative to the first of them.
-            offset += place - anchor - (place - anchor).round();
-        }
-        let place = first.unwrap_or(0.0) + offset / having.len() as f64;
-        landmarks[missing].at[reference] = Some(place.rem_euclid(1.0) % 1.0);
-    }
-    for landmark in landmarks.iter_mut() {
-        if landmark.at[reference].is_some_and(f64::is_nan) {
-            landmark.at[reference] = None;
-        }
+        // The mean of nearby places of a circle, relative to the first of them.
+        let offset: f64 = places
+            .iter()
+            .map(|place| place - places[0] - (place - places[0]).round())
+            .sum();
+        let mean = places[0] + offset / places.len() as f64;
+        landmarks[missing].at[reference] = Some(mean.rem_euclid(1.0) % 1.0);
     }
     Ok(())
 }

@@ -1,0 +1,98 @@
+use std::f64::consts::TAU;
+
+use super::*;
+use crate::matching::start::{distinct_minima, path_from_each_start};
+use crate::math::rotation;
+use crate::outline::Ring;
+
+fn wavy(amplitude: f64, turn: f64) -> Curve {
+    let ring = Ring::new((0..180).map(|k| {
+        let t = TAU * k as f64 / 180.0;
+        rotation(t + turn) * Point::new(1.0 + 0.2 * (2.0 * t + 1.0).sin() + amplitude * (5.0 * t).cos(), 0.0)
+    }));
+    Curve::new(&ring.expect("a ring")).expect("a curve")
+}
+
+fn even(count: usize) -> Vec<f64> {
+    (0..count).map(|k| k as f64 / count as f64).collect()
+}
+
+fn table(count: usize) -> MismatchTable {
+    MismatchTable::new(&wavy(0.1, 0.0), even(count), &wavy(0.15, 1.0), even(count), Vec::new())
+}
+
+/// The definition, by recursion over all nodes: the cost of the cheapest way from `(0, start)` to each node.
+fn naive_cost(table: &MismatchTable, start: usize) -> f32 {
+    let (rows, columns) = (table.row_count(), table.column_count());
+    let mut cost = vec![vec![f32::INFINITY; start + columns + 1]; rows + 1];
+    cost[0][start] = 0.0;
+    for i in 1..=rows {
+        for j in start..=start + columns {
+            for (a, b) in STEPS {
+                if a > i || start + b > j {
+                    continue;
+                }
+                let divisions = a.max(b);
+                let mismatch: f32 = (0..divisions)
+                    .map(|inner| table.mismatches(i - inner * a / divisions)[j - inner * b / divisions])
+                    .sum();
+                let ds1 = table.row_parameter(i) - table.row_parameter(i - a);
+                let ds2 = table.column_parameter(j) - table.column_parameter(j - b);
+                let step = step_cost(f64::from(mismatch / divisions as f32 / TURNING_COST), ds1, ds2) as f32;
+                cost[i][j] = cost[i][j].min(cost[i - a][j - b] + step);
+            }
+        }
+    }
+    cost[rows][start + columns]
+}
+
+#[test]
+fn the_cheapest_path_is_that_of_the_definition() {
+    let table = table(24);
+    for start in [0, 5, 23] {
+        let path = cheapest_path(&table, start, &table.reachable(start)).expect("a path");
+        assert!((path.cost - naive_cost(&table, start)).abs() < 1e-5);
+        assert_eq!(path.nodes.first(), Some(&(0, start)));
+        assert_eq!(path.nodes.last(), Some(&(24, start + 24)));
+        for pair in path.nodes.windows(2) {
+            assert!(STEPS.contains(&(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1)));
+        }
+    }
+}
+
+#[test]
+fn a_curve_matches_itself_along_the_diagonal() {
+    let curve = wavy(0.1, 0.0);
+    let table = MismatchTable::new(&curve, even(32), &curve, even(32), Vec::new());
+    let path = cheapest_path(&table, 0, &table.reachable(0)).expect("a path");
+    assert_eq!(path.cost, 0.0);
+    assert!(path.nodes.iter().all(|(i, j)| i == j));
+}
+
+#[test]
+fn paths_go_through_forced_rows() {
+    let columns: Vec<f64> = (0..32)
+        .map(|k| {
+            if k < 8 {
+                k as f64 / 80.0
+            } else {
+                0.1 + (k - 8) as f64 * 0.0375
+            }
+        })
+        .collect();
+    let table = MismatchTable::new(&wavy(0.1, 0.0), even(32), &wavy(0.15, 0.0), columns, vec![8]);
+    let path = cheapest_path(&table, 0, &table.reachable(0)).expect("a path");
+    assert!(path.nodes.contains(&(8, 8)));
+}
+
+#[test]
+fn dividing_the_starts_finds_the_best_of_all() {
+    let table = table(48);
+    let exhaustive = (0..48)
+        .filter_map(|start| cheapest_path(&table, start, &table.reachable(start)))
+        .filter(|path| path.nodes[0].1 % 2 == 0)
+        .map(|path| path.cost)
+        .fold(f32::INFINITY, f32::min);
+    let best = distinct_minima(&path_from_each_start(&table), 2, 3);
+    assert!((best[0].cost - exhaustive).abs() < 1e-6);
+}
