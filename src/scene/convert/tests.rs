@@ -1,4 +1,6 @@
 use super::*;
+use crate::math::Point;
+use crate::scene::settings::{Background, Facing};
 
 fn parse(text: &str) -> Result<Scene, SceneError> {
     Scene::parse(text, Path::new("cat/scene.toml"))

@@ -1,0 +1,118 @@
+//! The animation: keys, rate, size, background.
+
+use toml::Spanned;
+
+use super::{Checked, Reader};
+use crate::scene::animation::{Animation, Key};
+use crate::scene::error::SceneProblem;
+use crate::scene::file::AnimationTable;
+use crate::scene::settings::{Background, ScenePose};
+
+/// The largest side of a frame, in pixels.
+const LARGEST_FRAME: i64 = 16_384;
+/// The highest frame rate.
+const HIGHEST_RATE: f64 = 1000.0;
+/// The longest animation, in seconds: with the highest rate its frames can still be counted exactly.
+const LATEST_TIME: f64 = 1e6;
+
+impl Reader<'_> {
+    pub(super) fn animation(&self, table: &AnimationTable, poses: &[ScenePose]) -> Checked<Animation> {
+        let mut animation = match &table.keys {
+            Some(keys) if !keys.get_ref().is_empty() => {
+                let dimension = poses.first().map_or(0, |p| p.at.len());
+                let mut checked: Vec<Key> = Vec::new();
+                for (index, key) in keys.get_ref().iter().enumerate() {
+                    let start = key.span().start;
+                    let written = key.get_ref();
+                    if !written.time.is_finite() || written.time.abs() > LATEST_TIME {
+                        return Err(self.fail(
+                            start,
+                            SceneProblem::BadNumber {
+                                key: format!("time of animation key {index}"),
+                                value: written.time,
+                                allowed: "finite and at most a million seconds",
+                            },
+                        ));
+                    }
+                    if let Some(before) = checked.last().map(|k| k.time).filter(|before| *before >= written.time) {
+                        return Err(self.fail(
+                            start,
+                            SceneProblem::KeyOrder {
+                                index,
+                                time: written.time,
+                                before,
+                            },
+                        ));
+                    }
+                    let at = Spanned::new(key.span(), written.at.clone());
+                    checked.push(Key {
+                        time: written.time,
+                        at: self.place(&at, &format!("`at` of animation key {index}"), Some(dimension))?,
+                    });
+                }
+                Animation::new(checked, table.looped.unwrap_or(false))
+            }
+            _ => Animation::visiting(poses.iter().map(|p| p.at.as_slice()), table.looped.unwrap_or(true)),
+        };
+        animation.fps = self.number(
+            &table.fps,
+            "[animation] fps",
+            Animation::DEFAULT_FPS,
+            |v| v > 0.0 && v <= HIGHEST_RATE,
+            "above 0 and at most 1000",
+        )?;
+        if let Some(size) = &table.size {
+            let (start, sides) = (size.span().start, size.get_ref());
+            let bad = |value: i64| {
+                self.fail(
+                    start,
+                    SceneProblem::BadNumber {
+                        key: "[animation] size".to_owned(),
+                        value: value as f64,
+                        allowed: "two whole numbers [columns, rows] between 1 and 16384",
+                    },
+                )
+            };
+            let [columns, rows] = sides[..] else {
+                return Err(bad(sides.len() as i64));
+            };
+            for side in [columns, rows] {
+                if !(1..=LARGEST_FRAME).contains(&side) {
+                    return Err(bad(side));
+                }
+            }
+            animation.size = [columns as u32, rows as u32];
+        }
+        if let Some(background) = &table.background {
+            animation.background = background_colour(background.get_ref()).ok_or_else(|| {
+                self.fail(
+                    background.span().start,
+                    SceneProblem::BadChoice {
+                        key: "[animation] background".to_owned(),
+                        value: background.get_ref().clone(),
+                        allowed: "'transparent', 'white', 'black', '#rrggbb' or '#rrggbbaa'",
+                    },
+                )
+            })?;
+        }
+        Ok(animation)
+    }
+}
+
+fn background_colour(word: &str) -> Option<Background> {
+    let hex = match word {
+        "transparent" => return Some(Background::Transparent),
+        "white" => "#ffffff",
+        "black" => "#000000",
+        other => other,
+    }
+    .strip_prefix('#')?;
+    if !hex.is_ascii() || !matches!(hex.len(), 6 | 8) {
+        return None;
+    }
+    let mut colour = [255; 4];
+    for (k, channel) in colour.iter_mut().enumerate().take(hex.len() / 2) {
+        *channel = u8::from_str_radix(&hex[2 * k..2 * k + 2], 16).ok()?;
+    }
+    Some(Background::Colour(colour))
+}

@@ -1,0 +1,151 @@
+//! Poses: names, sources, places.
+
+use std::f64::consts::TAU;
+use std::path::PathBuf;
+
+use toml::{Spanned, Value};
+
+use super::{Checked, Reader};
+use crate::scene::error::SceneProblem;
+use crate::scene::file::PoseTable;
+use crate::scene::settings::{Facing, ScenePose};
+use crate::scene::source;
+
+/// The most whole turns that can be added to a pose.
+const MOST_TURNS: i64 = 1000;
+
+impl Reader<'_> {
+    pub(super) fn poses(&self, tables: &[Spanned<PoseTable>]) -> Checked<Vec<ScenePose>> {
+        if tables.is_empty() {
+            return Err(self.fail(self.text.len(), SceneProblem::NoPose));
+        }
+        let placed = tables.iter().position(|t| t.get_ref().at.is_some());
+        let unplaced = tables.iter().position(|t| t.get_ref().at.is_none());
+        if let (Some(with), Some(without)) = (placed, unplaced) {
+            return Err(self.fail(
+                tables[without].get_ref().name.span().start,
+                SceneProblem::HalfPlaced {
+                    with: tables[with].get_ref().name.get_ref().clone(),
+                    without: tables[without].get_ref().name.get_ref().clone(),
+                },
+            ));
+        }
+        let mut poses: Vec<ScenePose> = Vec::new();
+        for (index, table) in tables.iter().enumerate() {
+            let pose = self.pose(table, index, tables.len(), poses.first().map(|p| p.at.len()))?;
+            let at = table.get_ref().name.span().start;
+            if pose.name.is_empty() || poses.iter().any(|p| p.name == pose.name) {
+                return Err(self.fail(
+                    at,
+                    SceneProblem::BadName {
+                        kind: "pose",
+                        name: pose.name,
+                    },
+                ));
+            }
+            if let Some(other) = poses.iter().find(|p| p.at == pose.at) {
+                return Err(self.fail(
+                    at,
+                    SceneProblem::SamePlace {
+                        first: other.name.clone(),
+                        second: pose.name,
+                        place: format!("{:?}", pose.at),
+                    },
+                ));
+            }
+            poses.push(pose);
+        }
+        Ok(poses)
+    }
+
+    fn pose(
+        &self,
+        table: &Spanned<PoseTable>,
+        index: usize,
+        count: usize,
+        dimension: Option<usize>,
+    ) -> Checked<ScenePose> {
+        let written = table.get_ref();
+        let name = written.name.get_ref().clone();
+        if let Some(of) = &written.deform_of {
+            self.unsupported::<()>(of.span().start, "`deform_of`", "give the pose a source")?;
+        }
+        if let Some(handles) = &written.handles {
+            self.unsupported::<()>(handles.span().start, "`handles`", "give the pose a source")?;
+        }
+        let Some(source) = &written.source else {
+            return Err(self.fail(
+                written.name.span().start,
+                SceneProblem::Format(format!(
+                    "pose '{name}' has no source; add `source = \"FILE\"`, an image or SVG beside the scene file"
+                )),
+            ));
+        };
+        let path = self.word(source, &format!("pose '{name}': source"))?;
+        if let Some(reason) = source::leaves_folder(&path) {
+            return Err(self.fail(
+                source.span().start,
+                SceneProblem::SourceOutside {
+                    pose: name,
+                    path,
+                    reason,
+                },
+            ));
+        }
+        let element = match &written.element {
+            Some(element) => Some(self.word(element, &format!("pose '{name}': element"))?),
+            None => None,
+        };
+        let at = match &written.at {
+            Some(at) => self.place(at, &format!("`at` of pose '{name}'"), dimension)?,
+            None => automatic_place(index, count),
+        };
+        let turns = written.turns.as_ref().map_or(0, |t| *t.get_ref());
+        if turns.abs() > MOST_TURNS {
+            return Err(self.fail(
+                written.turns.as_ref().map_or(0, |t| t.span().start),
+                SceneProblem::BadNumber {
+                    key: format!("`turns` of pose '{name}'"),
+                    value: turns as f64,
+                    allowed: "a whole number between -1000 and 1000",
+                },
+            ));
+        }
+        Ok(ScenePose {
+            name,
+            source: PathBuf::from(path),
+            source_line: self.line(source.span().start),
+            element,
+            at,
+            facing: if written.mirror == Some(true) {
+                Facing::Mirrored
+            } else {
+                Facing::AsDrawn
+            },
+            turns: turns as i32,
+        })
+    }
+
+    /// A string, where with layers a table could stand.
+    fn word(&self, value: &Spanned<Value>, key: &str) -> Checked<String> {
+        match value.get_ref() {
+            Value::String(word) => Ok(word.clone()),
+            Value::Table(_) => self.unsupported(value.span().start, &format!("{key} per layer"), "give one string"),
+            other => Err(self.fail(
+                value.span().start,
+                SceneProblem::Format(format!("{key} is {other}, but must be a string in quotes")),
+            )),
+        }
+    }
+}
+
+/// Evenly on the unit circle, from (1, 0); a single pose at the origin.
+fn automatic_place(index: usize, count: usize) -> Vec<f64> {
+    if count == 1 {
+        return vec![0.0, 0.0];
+    }
+    let angle_rad = TAU * index as f64 / count as f64;
+    // Rounded, so that the four corners of a square lie exactly on the axes.
+    let tidy = |v: f64| (v * 1e12).round() / 1e12;
+    vec![tidy(angle_rad.cos()), tidy(angle_rad.sin())]
+}
