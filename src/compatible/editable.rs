@@ -145,8 +145,13 @@ impl EditableMesh {
         self.at_vertex.len() - 1
     }
 
-    /// The mesh with unused vertices dropped. `rings` and the first `boundary` vertices keep their order.
-    pub(super) fn finish(self, rings: &[Vec<usize>], steiner: usize) -> Result<CompatibleMesh, TopologyError> {
+    /// The mesh with unused vertices dropped and the others renumbered in their order.
+    pub(super) fn finish(
+        self,
+        rings: &[Vec<usize>],
+        landmarks: &[usize],
+        steiner: usize,
+    ) -> Result<CompatibleMesh, TopologyError> {
         let mut renumbered = vec![usize::MAX; self.vertex_count()];
         let mut count = 0;
         for (v, triangles) in self.at_vertex.iter().enumerate() {
@@ -176,10 +181,12 @@ impl EditableMesh {
             .iter()
             .map(|ring| ring.iter().map(|&v| renumbered[v]).collect())
             .collect();
+        let landmarks = landmarks.iter().map(|&v| renumbered[v]).collect();
         Ok(CompatibleMesh {
             topology: Topology::new(count, triangles)?,
             positions,
             rings,
+            landmarks,
             steiner,
         })
     }

@@ -21,6 +21,8 @@ pub struct CompatibleMesh {
     pub positions: Vec<Vec<Point>>,
     /// The boundary as vertex indices: outer ring first, then holes.
     pub rings: Vec<Vec<usize>>,
+    /// The vertices of interior landmarks, in the order given.
+    pub landmarks: Vec<usize>,
     /// Interior vertices that the triangulation itself had to add.
     pub steiner: usize,
 }

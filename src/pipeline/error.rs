@@ -61,6 +61,34 @@ pub enum PipelineError {
         /// Its place.
         y: f64,
     },
+    /// A landmark inside the shape is not given in every pose.
+    #[error(
+        "landmark '{landmark}' (line {line}) lies inside the shape but has no place in pose '{pose}'; give it one, or put it on the outline"
+    )]
+    LandmarkMissing {
+        /// Its name.
+        landmark: String,
+        /// The line of the scene file.
+        line: usize,
+        /// The pose's name.
+        pose: String,
+    },
+    /// A landmark inside the shape sees no vertex that it sees in every pose.
+    #[error(
+        "landmark '{landmark}' inside the shape cannot be joined to the outline or to another landmark by a line that is inside every pose; move it, or add a landmark between"
+    )]
+    LandmarkHidden {
+        /// Its name.
+        landmark: String,
+    },
+    /// A landmark inside the drawing is not inside its polygon.
+    #[error("landmark '{landmark}' is not inside the shape of pose '{pose}'; correct its place")]
+    LandmarkOutside {
+        /// Its name.
+        landmark: String,
+        /// The pose's name.
+        pose: String,
+    },
     /// Landmarks contradict one another.
     #[error(
         "landmark '{landmark}' makes the order impossible: going around pose '{pose}' the landmarks come in another order \

@@ -1,7 +1,8 @@
 //! From drawings to the N-way mapping: match, simplify, triangulate, refine.
 
 use super::drawings::{mirror_axis, reflected};
-use super::{PipelineError, Refinement, triangulation};
+use super::triangulation::{self, InteriorLandmark};
+use super::{PipelineError, Refinement};
 use crate::compatible::{RefineOptions, SimplifyError, SimplifyOptions, simplify};
 use crate::input::Drawing;
 use crate::matching::{Correspondence, Landmark, MatchError, MatchOptions, MirrorHints, match_rings};
@@ -13,6 +14,10 @@ use crate::scene::{Facing, Scene};
 /// How far a landmark may lie from the outline it is snapped to, as a fraction of the pose's diagonal: a few times the
 /// width of an ink line.
 const LANDMARK_REACH: f64 = 0.03;
+
+/// A landmark that in every pose lies inside the shape by more than this, as a fraction of the diagonal, is an interior
+/// one: about the width of an ink line.
+const INTERIOR_DEPTH: f64 = 0.01;
 
 /// What an artist should know about a mapping.
 #[derive(Debug, Clone, Default)]
@@ -39,7 +44,7 @@ pub fn map_drawings(scene: &Scene, drawings: &[Drawing]) -> Result<(Mapping, Map
     }
     let mut outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
     check_hole_counts(&names, &outlines)?;
-    let landmarks = landmarks(scene, drawings)?;
+    let (landmarks, interior) = landmarks(scene, drawings)?;
     let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
     let mut options = MatchOptions {
         reference: scene.reference,
@@ -84,7 +89,7 @@ pub fn map_drawings(scene: &Scene, drawings: &[Drawing]) -> Result<(Mapping, Map
     })?;
     report.boundary_vertices = simplified.report.vertices;
     let refinement = Refinement::Refine(RefineOptions::default().with_edge_length(scene.mesh.edge_length));
-    let (mesh, smallest_angle_deg) = triangulation::mesh(&names, &simplified.polygons, &refinement)?;
+    let (mesh, smallest_angle_deg) = triangulation::mesh(&names, &simplified.polygons, &interior, &refinement)?;
     report.smallest_angle_deg = smallest_angle_deg;
     let poses = PoseSet::new(mesh.topology, names.iter().cloned().zip(mesh.positions).collect())
         .map_err(|error| PipelineError::stage(&names, None, error))?;
@@ -135,10 +140,10 @@ fn check_hole_counts(names: &[String], outlines: &[Outline]) -> Result<(), Pipel
     }
 }
 
-/// The scene's landmarks as parameters of the outer rings.
-fn landmarks(scene: &Scene, drawings: &[Drawing]) -> Result<Vec<Landmark>, PipelineError> {
+/// The scene's landmarks: those on the outlines as parameters of the outer rings, and those inside.
+fn landmarks(scene: &Scene, drawings: &[Drawing]) -> Result<(Vec<Landmark>, Vec<InteriorLandmark>), PipelineError> {
     let measured: Vec<ArcLength> = drawings.iter().map(|d| ArcLength::new(d.outline.outer())).collect();
-    let mut landmarks = Vec::with_capacity(scene.landmarks.len());
+    let (mut on_outline, mut interior) = (Vec::new(), Vec::new());
     for landmark in &scene.landmarks {
         if landmark.at.iter().all(Option::is_none) {
             return Err(PipelineError::LandmarkNowhere {
@@ -146,38 +151,75 @@ fn landmarks(scene: &Scene, drawings: &[Drawing]) -> Result<Vec<Landmark>, Pipel
                 line: landmark.line,
             });
         }
-        let mut at = Vec::with_capacity(drawings.len());
+        let mut found = Vec::with_capacity(drawings.len());
         for (pose, place) in landmark.at.iter().enumerate() {
-            let Some(place) = place else {
-                at.push(None);
-                continue;
-            };
-            let drawing = &drawings[pose];
-            let place = match scene.poses[pose].facing {
-                Facing::AsDrawn => *place,
-                Facing::Mirrored => reflected(*place, mirror_axis(&drawing.outline)),
-            };
-            let (parameter, distance) = measured[pose].nearest(place);
-            let largest = LANDMARK_REACH * drawing.outline.diagonal();
-            if distance > largest {
+            found.push(place.map(|place| {
+                let drawing = &drawings[pose];
+                let place = match scene.poses[pose].facing {
+                    Facing::AsDrawn => place,
+                    Facing::Mirrored => reflected(place, mirror_axis(&drawing.outline)),
+                };
+                let (parameter, distance) = measured[pose].nearest(place);
+                Found {
+                    place,
+                    parameter,
+                    distance,
+                    inside: drawing.outline.contains(place),
+                    size: drawing.outline.diagonal(),
+                }
+            }));
+        }
+        let is_interior = found
+            .iter()
+            .flatten()
+            .all(|f| f.inside && f.distance > INTERIOR_DEPTH * f.size);
+        if is_interior {
+            let at = found.iter().enumerate().map(|(pose, found)| match found {
+                Some(found) => Ok(found.place),
+                None => Err(PipelineError::LandmarkMissing {
+                    landmark: landmark.name.clone(),
+                    line: landmark.line,
+                    pose: scene.poses[pose].name.clone(),
+                }),
+            });
+            interior.push(InteriorLandmark {
+                name: landmark.name.clone(),
+                at: at.collect::<Result<_, _>>()?,
+            });
+            continue;
+        }
+        for (pose, found) in found.iter().enumerate() {
+            if let Some(found) = found.as_ref().filter(|f| f.distance > LANDMARK_REACH * f.size) {
                 return Err(PipelineError::LandmarkOffOutline {
                     landmark: landmark.name.clone(),
                     line: landmark.line,
                     pose: scene.poses[pose].name.clone(),
-                    distance,
-                    largest,
-                    x: place.x,
-                    y: place.y,
+                    distance: found.distance,
+                    largest: LANDMARK_REACH * found.size,
+                    x: found.place.x,
+                    y: found.place.y,
                 });
             }
-            at.push(Some(parameter));
         }
-        landmarks.push(Landmark {
+        let at = found.iter().map(|found| found.as_ref().map(|f| f.parameter)).collect();
+        on_outline.push(Landmark {
             name: landmark.name.clone(),
             at,
         });
     }
-    Ok(landmarks)
+    Ok((on_outline, interior))
+}
+
+/// A landmark's place on one pose.
+struct Found {
+    place: Point,
+    /// Of the nearest point of the outline.
+    parameter: f64,
+    /// To that point, in source units.
+    distance: f64,
+    inside: bool,
+    /// The pose's diagonal.
+    size: f64,
 }
 
 /// A landmark on every pose: where a pose lacks it, where the matching puts it.

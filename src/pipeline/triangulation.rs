@@ -2,6 +2,7 @@
 
 use super::PipelineError;
 use crate::compatible::{CompatibleMesh, RefineOptions, TriangulateError, refine, triangulate};
+use crate::math::Point;
 use crate::mesh::geometry;
 use crate::outline::Outline;
 use crate::pose::{Mapping, Matching, Polygons, PoseSet};
@@ -15,12 +16,19 @@ pub enum Refinement {
     Refine(RefineOptions),
 }
 
+/// A landmark inside the shape.
+pub(super) struct InteriorLandmark {
+    pub(super) name: String,
+    /// Its place in every pose.
+    pub(super) at: Vec<Point>,
+}
+
 /// A mapping of polygons whose vertices already correspond: the mesh covers exactly these polygons.
 ///
 /// # Errors
 /// [`PipelineError`] if the triangulation or the refinement refuses.
 pub fn triangulate_polygons(polygons: &Polygons, refinement: &Refinement) -> Result<Mapping, PipelineError> {
-    let (mesh, _) = mesh(&polygons.names, &polygons.outlines, refinement)?;
+    let (mesh, _) = mesh(&polygons.names, &polygons.outlines, &[], refinement)?;
     let poses = PoseSet::new(
         mesh.topology,
         polygons.names.iter().cloned().zip(mesh.positions).collect(),
@@ -42,14 +50,23 @@ pub fn triangulate_polygons(polygons: &Polygons, refinement: &Refinement) -> Res
 pub(super) fn mesh(
     names: &[String],
     polygons: &[Outline],
+    landmarks: &[InteriorLandmark],
     refinement: &Refinement,
 ) -> Result<(CompatibleMesh, f64), PipelineError> {
-    let (mesh, _) = triangulate(polygons).map_err(|error| {
-        let pose = match &error {
-            TriangulateError::CountsDiffer { pose, .. } | TriangulateError::TooNarrow { pose, .. } => Some(*pose),
-            _ => None,
-        };
-        PipelineError::stage(names, pose, error)
+    let places: Vec<Vec<Point>> = landmarks.iter().map(|landmark| landmark.at.clone()).collect();
+    let named = |landmark: &usize| landmarks.get(*landmark).map_or_else(String::new, |l| l.name.clone());
+    let (mesh, _) = triangulate(polygons, &places).map_err(|error| match &error {
+        TriangulateError::CountsDiffer { pose, .. } | TriangulateError::TooNarrow { pose, .. } => {
+            PipelineError::stage(names, Some(*pose), error)
+        }
+        TriangulateError::LandmarkHidden { landmark } => PipelineError::LandmarkHidden {
+            landmark: named(landmark),
+        },
+        TriangulateError::LandmarkOutside { landmark, pose } => PipelineError::LandmarkOutside {
+            landmark: named(landmark),
+            pose: names.get(*pose).cloned().unwrap_or_default(),
+        },
+        _ => PipelineError::stage(names, None, error),
     })?;
     match refinement {
         Refinement::Bare => {

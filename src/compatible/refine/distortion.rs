@@ -267,7 +267,7 @@ mod tests {
         places.push(Point::new(0.5, 0.3));
         let triangles: Vec<[usize; 3]> = (0..6).map(|k| [6, k, (k + 1) % 6]).collect();
         let mut mesh = EditableMesh::new(vec![places], &triangles);
-        let stars = Stars::new(&mesh, &[(0..6).collect()]);
+        let stars = Stars::new(&mesh, &[(0..6).collect()], &[]);
         minimise(&mut mesh, &stars, 30);
         assert!(mesh.positions[0][6].norm() < 0.05, "{}", mesh.positions[0][6]);
     }

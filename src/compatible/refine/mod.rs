@@ -1,6 +1,7 @@
 //! Refinement: a valid compatible triangulation becomes a good one.
 //!
-//! Input and output: a [`CompatibleMesh`]; the boundary curves stay, point for point, but their edges may be split.
+//! Input and output: a [`CompatibleMesh`]; the boundary curves and the interior landmarks stay, point
+//! for point, but boundary edges may be split.
 //! Source: NWM 3.1 (angle-based smoothing and compatible flips, after Surazsky and Gotsman 2004); the distortion step
 //! is ours.
 //!
@@ -118,21 +119,21 @@ pub fn refine(mesh: &CompatibleMesh, options: &RefineOptions) -> Result<(Compati
     while length > options.edge_length * 0.99 {
         split::split_long_edges(&mut work, &mut rings, &diagonals, length);
         flips += flip::flip(&mut work);
-        let stars = Stars::new(&work, &rings);
+        let stars = Stars::new(&work, &rings, &mesh.landmarks);
         smooth::smooth(&mut work, &stars, SMOOTHING_SWEEPS);
         flips += flip::flip(&mut work);
         length *= 0.5;
     }
     for _ in 0..DISTORTION_ROUNDS {
-        let stars = Stars::new(&work, &rings);
+        let stars = Stars::new(&work, &rings, &mesh.landmarks);
         distortion::minimise(&mut work, &stars, DISTORTION_SWEEPS);
         flips += flip::flip(&mut work);
     }
-    let stars = Stars::new(&work, &rings);
+    let stars = Stars::new(&work, &rings, &mesh.landmarks);
     widen::widen(&mut work, &stars, options.smallest_angle_deg.to_radians());
 
     let splits = work.vertex_count() - start;
-    let refined = work.finish(&rings, mesh.steiner)?;
+    let refined = work.finish(&rings, &mesh.landmarks, mesh.steiner)?;
     let mut angles = worst_angles_deg(&refined);
     angles.sort_by(f64::total_cmp);
     let report = RefineReport {

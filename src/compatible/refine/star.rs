@@ -13,10 +13,10 @@ pub(super) struct Stars {
 }
 
 impl Stars {
-    /// The stars of all vertices that are on no ring.
-    pub(super) fn new(mesh: &EditableMesh, rings: &[Vec<usize>]) -> Self {
+    /// The stars of all vertices that are on no ring and are no landmark.
+    pub(super) fn new(mesh: &EditableMesh, rings: &[Vec<usize>], landmarks: &[usize]) -> Self {
         let mut fixed = vec![false; mesh.vertex_count()];
-        for &v in rings.iter().flatten() {
+        for &v in rings.iter().flatten().chain(landmarks) {
             fixed[v] = true;
         }
         let mut stars = Self {

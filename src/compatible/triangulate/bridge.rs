@@ -1,8 +1,9 @@
-//! Joins the holes of N polygons to their outer rings, so that one weakly simple polygon a pose is left.
+//! Joins the holes and interior landmarks of N polygons to their outer rings, so that one weakly simple polygon a pose is left.
 //!
 //! A bridge is a pair of vertices of two rings that see one another in every pose. Holes are joined one after another,
 //! each time by the bridge that is shortest relative to the pose's size, in the pose where it is longest. The polygon
-//! then runs along the bridge to the hole, once around the hole, and back. The paper has no holes.
+//! then runs along the bridge to the hole, once around the hole, and back. A landmark is a hole of one vertex. The paper has
+//! neither.
 //! Cost O(e) for each pair of vertices looked at, e the number of edges.
 
 use crate::math::{Point, point, predicate};
@@ -11,18 +12,18 @@ use crate::math::{Point, point, predicate};
 /// index them, outer ring first.
 ///
 /// # Errors
-/// The number of a hole, from 0, that no bridge reaches.
+/// The number of a ring that no bridge reaches.
 pub(super) fn join_rings(positions: &[Vec<Point>], rings: &[Vec<usize>]) -> Result<Vec<usize>, usize> {
     let mut walk = rings[0].clone();
     let mut bridges: Vec<(usize, usize)> = Vec::new();
     let mut waiting: Vec<usize> = (1..rings.len()).collect();
     let diagonals: Vec<f64> = positions.iter().map(point::diagonal).collect();
     while let Some(&first) = waiting.first() {
-        let bridge = shortest_bridge(positions, rings, &walk, &waiting, &bridges, &diagonals).ok_or(first - 1)?;
+        let bridge = shortest_bridge(positions, rings, &walk, &waiting, &bridges, &diagonals).ok_or(first)?;
         let ring = &rings[bridge.ring];
-        let mut detour: Vec<usize> = (0..=ring.len())
-            .map(|k| ring[(bridge.in_ring + k) % ring.len()])
-            .collect();
+        // Back to where it was entered; a ring of one vertex is visited once.
+        let visits = if ring.len() == 1 { 1 } else { ring.len() + 1 };
+        let mut detour: Vec<usize> = (0..visits).map(|k| ring[(bridge.in_ring + k) % ring.len()]).collect();
         detour.push(walk[bridge.in_walk]);
         bridges.push((walk[bridge.in_walk], ring[bridge.in_ring]));
         walk.splice(bridge.in_walk + 1..bridge.in_walk + 1, detour);
@@ -101,6 +102,16 @@ fn starts_inside(points: &[Point], walk: &[usize], at: usize, to: usize) -> bool
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_landmark_is_visited_once_and_left_the_way_it_was_reached() {
+        let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [1.0, 2.0], [2.0, 2.0]]
+            .map(Point::from)
+            .to_vec();
+        let walk = join_rings(&[points], &[vec![0, 1, 2, 3], vec![4], vec![5]]).expect("all visible");
+        assert_eq!(walk.len(), 4 + 2 * 2);
+        assert_eq!(walk.iter().filter(|&&v| v == 5).count(), 1);
+    }
 
     #[test]
     fn two_holes_are_joined_without_crossing() {

@@ -4,7 +4,7 @@
 //! vertex by vertex. Source: NWM 3.1 "Compatible triangulation", after Baxter, Barla, Anjyo (2008); the last resort
 //! after Aronov, Seidel, Souvaine, "On compatible triangulations of simple polygons" (1993).
 //!
-//! Holes are first joined to the outer ring by bridges ([`bridge`]). A piece is a list of corresponding vertices that
+//! Holes and interior landmarks are first joined to the outer ring by bridges ([`bridge`]). A piece is a list of corresponding vertices that
 //! bound a simple polygon (weakly simple along bridges) in every pose. Each piece is
 //! 1. triangulated with diagonals that have line of sight in all poses, or divided by as many of them as possible
 //!    ([`line_of_sight`]); what has none left is
@@ -87,6 +87,22 @@ pub enum TriangulateError {
         /// Which hole, from 0.
         hole: usize,
     },
+    /// An interior landmark sees no vertex that it sees in every pose.
+    #[error(
+        "interior landmark {landmark} sees no outline vertex or other landmark that it sees in every pose; move it, or add a landmark between"
+    )]
+    LandmarkHidden {
+        /// Which interior landmark.
+        landmark: usize,
+    },
+    /// An interior landmark is not inside its polygon, or has not one place a pose.
+    #[error("interior landmark {landmark} is not inside the polygon of pose {pose}")]
+    LandmarkOutside {
+        /// Which interior landmark.
+        landmark: usize,
+        /// Which pose.
+        pose: usize,
+    },
     /// A corridor of a polygon is so narrow that no valid mesh was found in double precision.
     #[error(
         "the polygons are too narrow to be meshed in double precision near ({x:.6}, {y:.6}) in pose {pose}; widen the drawing there"
@@ -104,14 +120,18 @@ pub enum TriangulateError {
     Topology(#[from] TopologyError),
 }
 
-/// Triangulates N polygons compatibly.
+/// Triangulates N polygons compatibly, with a vertex at each interior landmark.
 ///
-/// Vertex `k` of ring `r` is vertex `k` of the mesh plus the lengths of the rings before; Steiner points follow.
+/// `landmarks` are points inside the polygons: #landmarks x #poses. Vertex `k` of ring `r` is vertex `k` of the mesh plus
+/// the lengths of the rings before; the landmarks follow, then Steiner points.
 ///
 /// # Errors
-/// [`TriangulateError`] if the polygons do not correspond, a hole cannot be joined, or a corridor is too narrow for
-/// double precision.
-pub fn triangulate(polygons: &[Outline]) -> Result<(CompatibleMesh, TriangulateReport), TriangulateError> {
+/// [`TriangulateError`] if the polygons do not correspond, a hole or a landmark cannot be joined, or a corridor is too
+/// narrow for double precision.
+pub fn triangulate(
+    polygons: &[Outline],
+    landmarks: &[Vec<Point>],
+) -> Result<(CompatibleMesh, TriangulateReport), TriangulateError> {
     let first = polygons.first().ok_or(TriangulateError::NoPose)?;
     for (pose, polygon) in polygons.iter().enumerate() {
         for ring in 0..first.rings().len().max(polygon.rings().len()) {
@@ -127,9 +147,20 @@ pub fn triangulate(polygons: &[Outline]) -> Result<(CompatibleMesh, TriangulateR
             }
         }
     }
+    for (landmark, places) in landmarks.iter().enumerate() {
+        for (pose, polygon) in polygons.iter().enumerate() {
+            if !places.get(pose).is_some_and(|&place| polygon.contains(place)) {
+                return Err(TriangulateError::LandmarkOutside { landmark, pose });
+            }
+        }
+    }
     let positions: Vec<Vec<Point>> = polygons
         .iter()
-        .map(|polygon| polygon.rings().iter().flat_map(|ring| ring.points()).copied().collect())
+        .enumerate()
+        .map(|(pose, polygon)| {
+            let boundary = polygon.rings().iter().flat_map(|ring| ring.points()).copied();
+            boundary.chain(landmarks.iter().map(|places| places[pose])).collect()
+        })
         .collect();
     let mut rings: Vec<Vec<usize>> = Vec::new();
     let mut count = 0;
@@ -137,19 +168,30 @@ pub fn triangulate(polygons: &[Outline]) -> Result<(CompatibleMesh, TriangulateR
         rings.push((count..count + ring.len()).collect());
         count += ring.len();
     }
-    let joined = bridge::join_rings(&positions, &rings).map_err(|hole| TriangulateError::NoBridge { hole })?;
+    let landmark_vertices: Vec<usize> = (count..count + landmarks.len()).collect();
+    count += landmarks.len();
+    // A landmark is joined like a hole of one vertex.
+    let joined: Vec<Vec<usize>> = rings
+        .iter()
+        .cloned()
+        .chain(landmark_vertices.iter().map(|&vertex| vec![vertex]))
+        .collect();
+    let walk = bridge::join_rings(&positions, &joined).map_err(|ring| match ring.checked_sub(rings.len()) {
+        Some(landmark) => TriangulateError::LandmarkHidden { landmark },
+        None => TriangulateError::NoBridge { hole: ring - 1 },
+    })?;
     let mut division = Division {
         positions,
         triangles: Vec::new(),
         report: TriangulateReport::default(),
     };
-    division.solve(joined)?;
+    division.solve(walk)?;
 
     let mut mesh = EditableMesh::new(division.positions, &division.triangles);
     let mut report = division.report;
     report.decimated = decimate::decimate(&mut mesh, count);
     let steiner = report.single + report.link + report.overlay - report.decimated;
-    Ok((mesh.finish(&rings, steiner)?, report))
+    Ok((mesh.finish(&rings, &landmark_vertices, steiner)?, report))
 }
 
 /// The divide-and-conquer state: all vertices so far, and the triangles that are settled.

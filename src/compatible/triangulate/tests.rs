@@ -24,7 +24,10 @@ pub(super) fn prove(mesh: &CompatibleMesh, polygons: &[Outline]) {
     }
     assert_eq!(mesh.topology.euler_characteristic(), 1);
     let boundary: usize = mesh.rings.iter().map(Vec::len).sum();
-    assert_eq!(mesh.steiner, mesh.topology.vertex_count() - boundary);
+    assert_eq!(
+        mesh.steiner,
+        mesh.topology.vertex_count() - boundary - mesh.landmarks.len()
+    );
 }
 
 /// A band along a spiral: m points on each side.
@@ -46,7 +49,7 @@ fn spiral(m: usize, turns: f64) -> Vec<Point> {
 #[test]
 fn equal_polygons_need_no_steiner_point() {
     let polygons = vec![polygon(spiral(12, 1.5)), polygon(spiral(12, 1.5))];
-    let (mesh, report) = triangulate(&polygons).expect("triangulated");
+    let (mesh, report) = triangulate(&polygons, &[]).expect("triangulated");
     prove(&mesh, &polygons);
     assert_eq!(report, TriangulateReport::default());
 }
@@ -62,13 +65,38 @@ fn a_spiral_against_a_disc_against_a_mirrored_spiral() {
         .rev()
         .collect();
     let polygons = vec![polygon(disc), polygon(bent), polygon(other)];
-    let (mesh, _) = triangulate(&polygons).expect("triangulated");
+    let (mesh, _) = triangulate(&polygons, &[]).expect("triangulated");
     prove(&mesh, &polygons);
 }
 
 #[test]
+fn landmarks_become_vertices_even_where_they_turn_around_one_another() {
+    let square = || {
+        polygon(
+            [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0]]
+                .map(Point::from)
+                .to_vec(),
+        )
+    };
+    let polygons = vec![square(), square()];
+    let places = |turn: f64| (0..3).map(move |k| turn + std::f64::consts::TAU * f64::from(k) / 3.0);
+    let at = |angle: f64| Point::new(4.5 + 2.0 * angle.cos(), 4.5 + 2.0 * angle.sin());
+    let landmarks: Vec<Vec<Point>> = places(0.0).zip(places(1.5)).map(|(a, b)| vec![at(a), at(b)]).collect();
+    let (mesh, _) = triangulate(&polygons, &landmarks).expect("triangulated");
+    prove(&mesh, &polygons);
+    for (&vertex, landmark) in mesh.landmarks.iter().zip(&landmarks) {
+        assert_eq!(
+            [mesh.positions[0][vertex], mesh.positions[1][vertex]],
+            [landmark[0], landmark[1]]
+        );
+    }
+    let outside = triangulate(&polygons, &[vec![Point::new(1.0, 1.0), Point::new(-1.0, 1.0)]]).expect_err("outside");
+    assert_eq!(outside, TriangulateError::LandmarkOutside { landmark: 0, pose: 1 });
+}
+
+#[test]
 fn counts_that_differ_are_refused() {
-    let error = triangulate(&[polygon(star(&[1.0; 5])), polygon(star(&[1.0; 6]))]).expect_err("5 is not 6");
+    let error = triangulate(&[polygon(star(&[1.0; 5])), polygon(star(&[1.0; 6]))], &[]).expect_err("5 is not 6");
     assert_eq!(
         error,
         TriangulateError::CountsDiffer {
@@ -99,7 +127,7 @@ proptest! {
                 polygon(points)
             })
             .collect();
-        let (mesh, _) = triangulate(&polygons).expect("triangulated");
+        let (mesh, _) = triangulate(&polygons, &[]).expect("triangulated");
         prove(&mesh, &polygons);
     }
 }
