@@ -1,19 +1,81 @@
-//! N-way morphing for 2D animation.
+//! N-way morphing for 2D animation: independent drawings of one character in, drawings between them out.
+//!
+//! The poses of a character are drawn independently, and laid out as points of a space. At any place of that space this
+//! crate makes the drawing that belongs there; a path through the space is an animation.
+//!
+//! Sources: Baxter, Barla, Anjyo, "N-way morphing for 2D animation" (2009), called NWM in these pages; the weights also after Sloan,
+//! Rose, Cohen, "Shape by Example" (2001), called SBE.
+//!
+//! # The pipeline
+//!
+//! | stage | from | to |
+//! |---|---|---|
+//! | [`scene`] | `scene.toml` | [`Scene`](scene::Scene) |
+//! | [`input`] | a file's bytes | [`Drawing`](input::Drawing): outline and pixels |
+//! | [`matching`] | N outlines | [`Correspondence`](matching::Correspondence) |
+//! | [`compatible`] | N outlines in correspondence | [`CompatibleMesh`](compatible::CompatibleMesh) |
+//! | [`pose`] | all of these | [`Mapping`](pose::Mapping): one topology, N embeddings |
+//! | [`weights`] | a place of the pose space | N weights that sum to 1 |
+//! | [`blend`] | N weights | the vertices of one mesh |
+//! | [`texture`] | N weights | how much of each drawing is seen |
+//! | [`render`] | vertices and weights | [`Frame`](render::Frame) |
+//! | [`export`] | frames | PNG, GIF, APNG |
+//!
+//! [`pipeline`] wires them together; [`Character`](pipeline::Character) is the whole of it, built once and asked for frames from any thread:
+//!
+//! ```
+//! use inbetween::{pipeline::Character, scene::Scene};
+//! use std::path::Path;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let scene = Scene::open(Path::new("data/walker/scene.toml"))?;
+//! let character = Character::new(&scene, [96, 108])?;
+//! let frame = character.frame_at(&[0.5, 0.2])?;
+//! assert_eq!((frame.width, frame.height), (96, 108));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Conventions
+//!
+//! Coordinates are `f64`, x to the right and y down as in the source file; an outline has positive signed area, its holes negative.
+//! Nothing here reads a clock or the environment, and results do not depend on the number of threads. Files are opened
+//! by [`input`], [`scene`] and [`export`] alone.
 
+// Foundations.
 pub mod math;
 
-pub mod mesh;
-pub mod outline;
 pub mod solve;
 
-pub mod blend;
-pub mod compatible;
-pub mod export;
+pub mod outline;
+
+pub mod mesh;
+
+// Stages, as data flows.
 pub mod input;
+
 pub mod matching;
-pub mod pipeline;
+
+pub mod compatible;
+
 pub mod pose;
-pub mod render;
-pub mod scene;
-pub mod texture;
+
 pub mod weights;
+
+pub mod blend;
+
+pub mod texture;
+
+pub mod render;
+
+// What stands around them.
+pub mod scene;
+
+pub mod export;
+
+pub mod pipeline;
+
+/// The README's example compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
