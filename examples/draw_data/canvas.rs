@@ -7,7 +7,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use kurbo::{Affine, BezPath, PathEl};
+use kurbo::{Affine, BezPath, PathEl, Point};
 use tiny_skia::{
     BlendMode, Color, FillRule, LineJoin, Mask, Paint, PathBuilder, Pixmap, PremultipliedColorU8, Stroke, Transform,
 };
@@ -89,6 +89,27 @@ impl Canvas {
         if let Some(path) = skia(path) {
             self.large.stroke_path(&path, &paint(colour), &stroke, enlarge(), None);
         }
+    }
+
+    /// Where the ray from `inside` through `towards` first leaves what has been drawn.
+    pub(crate) fn edge(&self, inside: Point, towards: Point) -> Result<Point, Box<dyn Error>> {
+        let step = (towards - inside).normalize() / f64::from(OVERSAMPLING);
+        let bounds = kurbo::Rect::new(0.0, 0.0, f64::from(self.width_px), f64::from(self.height_px));
+        let mut here = inside;
+        while bounds.contains(here) {
+            if !self.is_drawn(here) {
+                return Ok(here - 0.5 * step);
+            }
+            here += step;
+        }
+        Err(format!("nothing ends between {inside} and {towards}").into())
+    }
+
+    /// Whether anything is drawn there.
+    pub(crate) fn is_drawn(&self, point: Point) -> bool {
+        let [column, row] = [point.x, point.y].map(|value| (value * f64::from(OVERSAMPLING)).max(0.0) as u32);
+        let pixel = self.large.pixel(column, row);
+        pixel.is_some_and(|pixel| pixel.alpha() >= 128)
     }
 
     /// Averages down and writes a PNG file.

@@ -181,7 +181,8 @@ impl Limb {
         self.patch(0.0, 1.0, -1.0, 1.0)
     }
 
-    fn place(&self, along: f64, across: f64) -> Point {
+    /// The point at `along` (0 at the root, 1 at the end) and `across` (-1 and 1 at the edges).
+    pub(crate) fn place(&self, along: f64, across: f64) -> Point {
         let scaled = along.clamp(0.0, 1.0) * (LIMB_SAMPLES - 1) as f64;
         let k = (scaled as usize).min(LIMB_SAMPLES - 2);
         let part = scaled - k as f64;

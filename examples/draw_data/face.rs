@@ -35,6 +35,11 @@ const MOUTH: &str = "#7d2136";
 const TEETH: &str = "#fffdf6";
 const TONGUE: &str = "#f0717a";
 
+const SETTINGS: &str = "\
+[texture]
+sharpness = 0.8
+";
+
 const ANIMATION: &str = "\
 [animation]
 fps = 24
@@ -104,7 +109,7 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
             name: look.name,
             file: format!("{}.svg", look.name),
             at: look.at,
-            landmarks: vec![("chin", line[CHIN]), ("tuft", line[TUFT])],
+            landmarks: landmarks(&line),
         });
     }
     scene::save(
@@ -112,9 +117,18 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
         &Scene {
             element: Some("head"),
             poses,
+            settings: SETTINGS,
             animation: ANIMATION,
         },
     )
+}
+
+/// The points of the head that the artist names.
+fn landmarks(line: &[Point]) -> Vec<(String, Point)> {
+    OUTLINE_LANDMARKS
+        .iter()
+        .map(|&(name, k)| (name.to_owned(), line[k]))
+        .collect()
 }
 
 /// The ball that the features lie on.
@@ -256,9 +270,24 @@ fn outline(head: &Head) -> Vec<Point> {
     points.map(|(x, y)| middle + Vec2::new(x, y)).to_vec()
 }
 
-/// Where in the outline the chin and the tuft's top are.
-const CHIN: usize = 0;
-const TUFT: usize = 15;
+/// Which points of the outline carry a landmark.
+const OUTLINE_LANDMARKS: [(&str, usize); 15] = [
+    ("chin", 0),
+    ("left_jaw", 2),
+    ("left_lobe", 4),
+    ("left_ear", 6),
+    ("left_ear_top", 8),
+    ("left_hair", 10),
+    ("left_tuft_root", 12),
+    ("tuft", 15),
+    ("tuft_notch", 17),
+    ("right_tuft_root", 21),
+    ("right_hair", 23),
+    ("right_ear_top", 25),
+    ("right_ear", 27),
+    ("right_lobe", 29),
+    ("right_jaw", 31),
+];
 /// Where in the outline the hair begins (behind the left ear) and ends (behind the right one).
 const HAIR_POINTS: std::ops::RangeInclusive<usize> = 8..=25;
 

@@ -15,8 +15,8 @@ pub(crate) struct Pose {
     pub(crate) file: String,
     /// Place in pose space.
     pub(crate) at: [f64; 2],
-    /// Points of the outline that the artist names; the same names in every pose.
-    pub(crate) landmarks: Vec<(&'static str, Point)>,
+    /// Points of the drawing that the artist names, on its outline or inside it; the same names in every pose.
+    pub(crate) landmarks: Vec<(String, Point)>,
 }
 
 /// What a scene file says.
@@ -26,6 +26,8 @@ pub(crate) struct Scene {
     pub(crate) element: Option<&'static str>,
     /// The poses; the first is the reference.
     pub(crate) poses: Vec<Pose>,
+    /// The sections before the poses as they stand in the file.
+    pub(crate) settings: &'static str,
     /// The `[animation]` section as it stands in the file.
     pub(crate) animation: &'static str,
 }
@@ -35,6 +37,9 @@ pub(crate) fn save(folder: &Path, scene: &Scene) -> Result<(), Box<dyn Error>> {
     let mut text = String::from("version = 1\n");
     let reference = scene.poses.first().ok_or("a scene needs a pose")?;
     writeln!(text, "reference = \"{}\"", reference.name)?;
+    if !scene.settings.is_empty() {
+        write!(text, "\n{}", scene.settings)?;
+    }
     for pose in &scene.poses {
         write!(
             text,

@@ -40,6 +40,15 @@ const WHITE: &str = "#fffdf4";
 /// Samples of a centre line.
 const SAMPLES: usize = 1200;
 
+const SETTINGS: &str = "\
+[mesh]
+simplify = 0.01
+edge_length = 0.04
+
+[texture]
+sharpness = 0.8
+";
+
 const ANIMATION: &str = "\
 [animation]
 fps = 24
@@ -112,13 +121,15 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
         }
         let file = format!("{name}.svg");
         drawing.save(&folder.join(&file))?;
-        let landmarks = [("tail", at(-LINE, 0.0)), ("tongue", tongue_side(TONGUE_LINE)[FORK])]
-            .map(|(name, body)| (name, centre_line.place(body).0));
+        let landmarks: Vec<(String, Point)> = landmarks()
+            .into_iter()
+            .map(|(name, body)| (name, centre_line.place(body).0))
+            .collect();
         poses.push(Pose {
             name,
             file,
             at: at_place,
-            landmarks: landmarks.to_vec(),
+            landmarks,
         });
     }
     scene::save(
@@ -126,10 +137,34 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
         &Scene {
             element: Some("body"),
             poses,
+            settings: SETTINGS,
             animation: ANIMATION,
         },
     )
 }
+
+/// The points of the outline that the artist names, in body coordinates: going round the body from the tail.
+fn landmarks() -> Vec<(String, Point)> {
+    let outer = grown(&skin_ring(), LINE);
+    let side = |name: &str, sign: f64| -> Vec<(String, Point)> {
+        let station = |(number, k): (usize, &usize)| {
+            let point = outer[1 + k];
+            (format!("{name}_{:02}", number + 1), at(point.x, sign * point.y))
+        };
+        let mut points: Vec<(String, Point)> = STATIONS.iter().enumerate().map(station).collect();
+        let tip = tongue_side(TONGUE_LINE)[TONGUE_TIP];
+        points.push((format!("{name}_tongue_tip"), at(tip.x, sign * tip.y)));
+        points
+    };
+    let mut points = vec![("tail".to_owned(), at(-LINE, 0.0))];
+    points.extend(side("left", 1.0));
+    points.push(("tongue".to_owned(), tongue_side(TONGUE_LINE)[FORK]));
+    points.extend(side("right", -1.0).into_iter().rev());
+    points
+}
+
+/// Which of the skin's half widths carry a landmark on either side: every second one on the tail, more on the head.
+const STATIONS: [usize; 12] = [3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16];
 
 /// A centre line, sampled evenly; before the tail and beyond the snout it goes straight on.
 struct CentreLine {
@@ -341,6 +376,8 @@ fn tongue() -> BezPath {
     path
 }
 
+/// Where in a side of the tongue its tip is.
+const TONGUE_TIP: usize = 4;
 /// Where in a side of the tongue the bottom of the fork is.
 const FORK: usize = 6;
 

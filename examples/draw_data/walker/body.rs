@@ -15,10 +15,12 @@ const THIGH: f64 = 82.0;
 const SHIN: f64 = 78.0;
 const HIP_RADIUS: f64 = 28.0;
 
+/// A leg with its shoe.
+#[derive(Debug)]
 pub(super) struct Leg {
-    limb: Limb,
-    hip: Point,
-    foot: Affine,
+    pub(super) limb: Limb,
+    pub(super) hip: Point,
+    pub(super) foot: Affine,
 }
 
 impl Leg {
@@ -125,10 +127,12 @@ pub(super) fn draw_trousers(canvas: &mut Canvas, torso: Affine, legs: &[Leg; 2])
     }
 }
 
+/// An arm with its mitten.
+#[derive(Debug)]
 pub(super) struct Arm {
-    limb: Limb,
-    shoulder: Point,
-    hand: Affine,
+    pub(super) limb: Limb,
+    pub(super) shoulder: Point,
+    pub(super) hand: Affine,
     side: Side,
 }
 
@@ -234,7 +238,7 @@ pub(super) fn draw_sweater(canvas: &mut Canvas, torso: Affine, arms: &[Arm; 2]) 
         canvas.fill(part, SWEATER);
     }
     for arm in arms {
-        canvas.fill(&arm.limb.patch(0.48, 0.62, -1.0, 1.0), CREAM);
+        canvas.fill(&arm.limb.patch(0.55, 0.69, -1.0, 1.0), CREAM);
         // The side away from the thumb lies in shadow.
         canvas.shade(&arm.limb.shadow(0.22, arm.side.sign()), &arm.limb.body());
     }

@@ -125,10 +125,10 @@ fn draw_features(canvas: &mut Canvas, head: Affine, posture: &Posture) {
     }
 }
 
-/// The outermost point of the pompom's ink line.
-pub(super) fn pompom_top(head: Affine, flop_deg: f64) -> Point {
+/// The pompom's middle and the point above it in the direction of the cap's tip.
+pub(super) fn pompom_axis(head: Affine, flop_deg: f64) -> [Point; 2] {
     let (pompom, direction) = cap_end(flop_deg);
-    head * (pompom + direction * (POMPOM_RADIUS + LINE))
+    [head * pompom, head * (pompom + direction * POMPOM_RADIUS)]
 }
 
 /// The cap's soft tip with its pompom; it lies behind the cap's dome.

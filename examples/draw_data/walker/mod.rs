@@ -7,20 +7,29 @@
 
 mod body;
 mod head;
+mod landmarks;
 mod posture;
 mod style;
 
 use std::error::Error;
 use std::path::Path;
 
+use kurbo::Affine;
+
 use crate::canvas::Canvas;
 use crate::scene::{self, Pose, Scene};
 use body::{Arm, Leg, draw_scarf, draw_shoes, draw_sweater, draw_trousers};
-use head::{draw_cap, draw_cap_tip, draw_head, pompom_top};
+use head::{draw_cap, draw_cap_tip, draw_head};
+use landmarks::landmarks;
 use posture::{Posture, Side, postures};
 
 const WIDTH_PX: u32 = 640;
 const HEIGHT_PX: u32 = 720;
+
+const SETTINGS: &str = "\
+[texture]
+sharpness = 0.8
+";
 
 const ANIMATION: &str = "\
 [animation]
@@ -57,15 +66,15 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
     let mut poses = Vec::new();
     for posture in postures() {
         let mut canvas = Canvas::new(WIDTH_PX, HEIGHT_PX)?;
-        draw_figure(&mut canvas, &posture);
+        let figure = Figure::new(&posture);
+        figure.draw(&mut canvas, &posture);
         let file = format!("{}.png", posture.name);
         canvas.save(&folder.join(&file))?;
-        let top = pompom_top(posture.head(), posture.flop_deg);
         poses.push(Pose {
             name: posture.name,
             file,
             at: posture.at,
-            landmarks: vec![("pompom", top)],
+            landmarks: landmarks(&canvas, &figure, &posture)?,
         });
     }
     scene::save(
@@ -73,25 +82,49 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
         &Scene {
             element: None,
             poses,
+            settings: SETTINGS,
             animation: ANIMATION,
         },
     )
 }
 
-/// From the feet up to the cap.
-fn draw_figure(canvas: &mut Canvas, posture: &Posture) {
-    let (torso, head) = (posture.torso(), posture.head());
-    let legs =
-        [(Side::Left, posture.left_leg), (Side::Right, posture.right_leg)].map(|(s, l)| Leg::new(posture.hips, s, l));
-    let arms = [(Side::Left, posture.left_arm), (Side::Right, posture.right_arm)].map(|(s, l)| Arm::new(torso, s, l));
-    draw_shoes(canvas, &legs);
-    draw_trousers(canvas, torso, &legs);
-    for arm in &arms {
-        arm.draw_hand(canvas);
+/// The parts of a figure, placed.
+#[derive(Debug)]
+struct Figure {
+    torso: Affine,
+    head: Affine,
+    legs: [Leg; 2],
+    arms: [Arm; 2],
+}
+
+impl Figure {
+    fn new(posture: &Posture) -> Self {
+        let torso = posture.torso();
+        Self {
+            torso,
+            head: posture.head(),
+            legs: [
+                Leg::new(posture.hips, Side::Left, posture.left_leg),
+                Leg::new(posture.hips, Side::Right, posture.right_leg),
+            ],
+            arms: [
+                Arm::new(torso, Side::Left, posture.left_arm),
+                Arm::new(torso, Side::Right, posture.right_arm),
+            ],
+        }
     }
-    draw_sweater(canvas, torso, &arms);
-    draw_cap_tip(canvas, head, posture.flop_deg);
-    draw_scarf(canvas, torso);
-    draw_head(canvas, head, posture);
-    draw_cap(canvas, head, posture.flop_deg);
+
+    /// From the feet up to the cap.
+    fn draw(&self, canvas: &mut Canvas, posture: &Posture) {
+        draw_shoes(canvas, &self.legs);
+        draw_trousers(canvas, self.torso, &self.legs);
+        for arm in &self.arms {
+            arm.draw_hand(canvas);
+        }
+        draw_sweater(canvas, self.torso, &self.arms);
+        draw_cap_tip(canvas, self.head, posture.flop_deg);
+        draw_scarf(canvas, self.torso);
+        draw_head(canvas, self.head, posture);
+        draw_cap(canvas, self.head, posture.flop_deg);
+    }
 }

@@ -91,8 +91,8 @@ pub(super) fn postures() -> [Posture; 5] {
         flop_deg: 58.0,
         look: Vec2::new(0.0, 0.0),
         mouth: Mouth::Smile,
-        left_arm: limb(50.0, 22.0, 0.0),
-        right_arm: limb(50.0, 22.0, 0.0),
+        left_arm: limb(58.0, 26.0, 0.0),
+        right_arm: limb(58.0, 26.0, 0.0),
         left_leg: Stance::Planted,
         right_leg: Stance::Planted,
     };
@@ -145,7 +145,7 @@ pub(super) fn postures() -> [Posture; 5] {
         flop_deg: 62.0,
         look: Vec2::new(2.0, -1.0),
         mouth: Mouth::Open,
-        left_arm: limb(52.0, 26.0, 0.0),
+        left_arm: limb(60.0, 30.0, 0.0),
         right_arm: limb(92.0, 140.0, 8.0),
         ..stand
     };

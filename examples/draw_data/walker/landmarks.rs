@@ -1,0 +1,125 @@
+//! The points of the figure that the artist names: the same physical point in all five pictures.
+//!
+//! Every outline point is found on the finished picture: a ray that is fixed to a part of the figure leaves the drawing
+//! there. Going round the figure the names come in the same order in every pose.
+
+use std::error::Error;
+
+use kurbo::{Affine, Point};
+
+use super::Figure;
+use super::head::pompom_axis;
+use super::posture::{Posture, Side};
+use crate::canvas::Canvas;
+use crate::curves::at;
+
+/// Rays of a mitten, from the thumb's side of the wrist to the other one: a point inside, and one it passes through.
+const HAND: [(&str, Point, Point); 7] = [
+    ("cuff_thumb_side", Point::new(-1.5, 0.0), Point::new(-1.5, 23.0)),
+    ("thumb_root", Point::new(24.0, 30.0), Point::new(12.0, 41.0)),
+    ("thumb_tip", Point::new(31.0, 40.0), Point::new(34.0, 58.0)),
+    ("thumb_notch", Point::new(28.0, 20.0), Point::new(41.0, 31.0)),
+    ("fingertip", Point::new(40.0, 2.0), Point::new(72.0, 2.0)),
+    ("knuckles", Point::new(35.0, 0.0), Point::new(35.0, -27.0)),
+    ("cuff_little_side", Point::new(-1.5, 0.0), Point::new(-1.5, -23.0)),
+];
+
+/// Rays of a shoe, from the instep over the toe to the heel.
+const SHOE: [(&str, Point, Point); 6] = [
+    ("instep", Point::new(52.0, 24.0), Point::new(58.0, 7.0)),
+    ("toe", Point::new(60.0, 32.0), Point::new(84.0, 32.0)),
+    ("sole_front", Point::new(74.0, 30.0), Point::new(74.0, 40.0)),
+    ("sole_middle", Point::new(26.0, 30.0), Point::new(26.0, 40.0)),
+    ("sole_back", Point::new(-22.0, 30.0), Point::new(-22.0, 40.0)),
+    ("heel", Point::new(0.0, 32.0), Point::new(-32.0, 32.0)),
+];
+
+/// Just outside the ink line of a sleeve, in half widths of it.
+const UNDER_ARM: f64 = 1.45;
+
+/// The middle of a sleeve's stripe, along the arm.
+const SLEEVE: f64 = 0.62;
+
+/// All landmarks, in order around the figure.
+pub(super) fn landmarks(
+    canvas: &Canvas,
+    figure: &Figure,
+    posture: &Posture,
+) -> Result<Vec<(String, Point)>, Box<dyn Error>> {
+    let mut rays: Vec<(String, Point, Point)> = Vec::new();
+    let [pompom, above] = pompom_axis(figure.head, posture.flop_deg);
+    rays.push(("pompom".to_owned(), pompom, above));
+    rays.extend(side_rays(canvas, figure, Side::Right));
+    let thighs = figure
+        .legs
+        .each_ref()
+        .map(|leg| (leg.limb.place(0.4, 0.0) - leg.hip).normalize());
+    let seat = figure.torso * at(0.0, 0.0);
+    rays.push(("crotch".to_owned(), seat, seat + thighs[0] + thighs[1]));
+    rays.extend(side_rays(canvas, figure, Side::Left).into_iter().rev());
+    rays.into_iter()
+        .map(|(name, inside, towards)| Ok((name, canvas.edge(inside, towards)?)))
+        .collect()
+}
+
+/// The rays of one side, from the cap down to the inner side of the leg.
+fn side_rays(canvas: &Canvas, figure: &Figure, side: Side) -> Vec<(String, Point, Point)> {
+    let (name, index, sign) = match side {
+        Side::Left => ("left", 0, side.sign()),
+        Side::Right => ("right", 1, side.sign()),
+    };
+    let (arm, leg) = (&figure.arms[index], &figure.legs[index]);
+    let mut rays = Vec::new();
+    let mut add = |part: &str, inside: Point, towards: Point| rays.push((format!("{name}_{part}"), inside, towards));
+    let placed = |frame: Affine, x: f64, y: f64| frame * at(x * sign, y);
+
+    add(
+        "cap_brim",
+        placed(figure.head, 60.0, -116.0),
+        placed(figure.head, 93.0, -116.0),
+    );
+    add(
+        "ear",
+        placed(figure.head, 88.0, -58.0),
+        placed(figure.head, 105.0, -58.0),
+    );
+    add(
+        "jaw",
+        placed(figure.head, 40.0, -50.0),
+        placed(figure.head, 74.0, -22.0),
+    );
+    // `across` runs to the right of the direction from the shoulder to the wrist.
+    add(
+        "sleeve_outside",
+        arm.limb.place(SLEEVE, 0.0),
+        arm.limb.place(SLEEVE, -sign),
+    );
+    for (part, inside, towards) in HAND {
+        add(part, arm.hand * inside, arm.hand * towards);
+    }
+    add(
+        "sleeve_inside",
+        arm.limb.place(SLEEVE, 0.0),
+        arm.limb.place(SLEEVE, sign),
+    );
+    // Under the sleeve, up to where the trunk's line begins.
+    let under = |step: i32| arm.limb.place(0.9 - 0.005 * f64::from(step), UNDER_ARM * sign);
+    let armpit = (0..160)
+        .map(under)
+        .find(|&point| canvas.is_drawn(point))
+        .unwrap_or(arm.shoulder);
+    add("armpit", arm.limb.place(0.25, 0.0), armpit);
+    add(
+        "waist",
+        placed(figure.torso, 0.0, -36.0),
+        placed(figure.torso, 66.0, -36.0),
+    );
+    add("knee_outside", leg.limb.place(0.5, 0.0), leg.limb.place(0.5, -sign));
+    add("turn_up_outside", leg.limb.place(0.9, 0.0), leg.limb.place(0.9, -sign));
+    for (part, inside, towards) in SHOE {
+        add(part, leg.foot * inside, leg.foot * towards);
+    }
+    add("turn_up_inside", leg.limb.place(0.9, 0.0), leg.limb.place(0.9, sign));
+    add("knee_inside", leg.limb.place(0.5, 0.0), leg.limb.place(0.5, sign));
+    rays
+}
