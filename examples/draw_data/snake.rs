@@ -145,13 +145,12 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
 
 /// The points of the outline that the artist names, in body coordinates: going round the body from the tail.
 fn landmarks() -> Vec<(String, Point)> {
-    let outer = grown(&skin_ring(), LINE);
     let side = |name: &str, sign: f64| -> Vec<(String, Point)> {
-        let station = |(number, k): (usize, &usize)| {
-            let point = outer[1 + k];
-            (format!("{name}_{:02}", number + 1), at(point.x, sign * point.y))
+        let station = |k: u32| {
+            let s = FIRST_STATION + STATION_STEP * f64::from(k);
+            (format!("{name}_{:02}", k + 1), at(s, sign * (half_width(s) + LINE)))
         };
-        let mut points: Vec<(String, Point)> = STATIONS.iter().enumerate().map(station).collect();
+        let mut points: Vec<(String, Point)> = (0..STATIONS).map(station).collect();
         let tip = tongue_side(TONGUE_LINE)[TONGUE_TIP];
         points.push((format!("{name}_tongue_tip"), at(tip.x, sign * tip.y)));
         points
@@ -163,8 +162,10 @@ fn landmarks() -> Vec<(String, Point)> {
     points
 }
 
-/// Which of the skin's half widths carry a landmark on either side: every second one on the tail, more on the head.
-const STATIONS: [usize; 12] = [3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16];
+/// Where along the body the sides carry landmarks: evenly, up to the widest part of the head.
+const FIRST_STATION: f64 = 60.0;
+const STATION_STEP: f64 = 50.0;
+const STATIONS: u32 = 18;
 
 /// A centre line, sampled evenly; before the tail and beyond the snout it goes straight on.
 struct CentreLine {
