@@ -25,6 +25,9 @@ mod split;
 mod star;
 mod widen;
 
+#[cfg(test)]
+mod tests;
+
 use super::CompatibleMesh;
 use super::editable::EditableMesh;
 use crate::math::point;

@@ -27,6 +27,9 @@ mod edge_grid;
 mod tighten;
 mod tuples;
 
+#[cfg(test)]
+mod tests;
+
 use collapse::{Collapser, OriginalRing, PoseOriginal};
 use tuples::TupleRing;
 

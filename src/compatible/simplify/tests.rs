@@ -1,0 +1,117 @@
+//! Enclosure, simplicity and correspondence of whole simplifications.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::math::predicate;
+use crate::outline::ArcLength;
+
+/// A wavy closed curve around a point: `waves` bumps of the given height, `count` points.
+fn wavy(count: usize, waves: usize, height: f64, phase: f64) -> Outline {
+    let points = (0..count).map(|k| {
+        let angle = std::f64::consts::TAU * k as f64 / count as f64;
+        let radius = 100.0 * (1.0 + height * (waves as f64 * angle + phase).sin());
+        Point::new(radius * angle.cos(), radius * angle.sin())
+    });
+    Outline::new(Ring::new(points).expect("a ring"), Vec::new()).expect("simple")
+}
+
+/// The largest distance, over the diagonal, by which a point of the outline is outside its polygon.
+fn escape(outline: &Outline, polygon: &Outline) -> f64 {
+    let outside = |p: &Point| {
+        let on_edge = polygon.outer().edges().any(|(a, b)| predicate::on_segment(*p, a, b));
+        if on_edge || polygon.contains(*p) {
+            0.0
+        } else {
+            ArcLength::new(polygon.outer()).nearest(*p).1
+        }
+    };
+    outline.outer().points().iter().map(outside).fold(0.0, f64::max) / outline.diagonal()
+}
+
+#[test]
+fn a_square_with_points_along_its_sides_becomes_four_vertices() {
+    let side = |k: usize| k as f64 / 10.0;
+    let points = (0..40).map(|k| match k / 10 {
+        0 => Point::new(side(k), 0.0),
+        1 => Point::new(1.0, side(k - 10)),
+        2 => Point::new(1.0 - side(k - 20), 1.0),
+        _ => Point::new(0.0, 1.0 - side(k - 30)),
+    });
+    let square = Outline::new(Ring::new(points).expect("a ring"), Vec::new()).expect("simple");
+    let outlines = vec![square.clone(), square];
+    let simplified = simplify(
+        &outlines,
+        &[Correspondence::identity(2, 64)],
+        &[],
+        &SimplifyOptions::default(),
+    )
+    .expect("simplified");
+    assert_eq!(simplified.report.vertices, 4);
+    assert!(simplified.report.excess_area.iter().all(|excess| excess.abs() < 1e-12));
+}
+
+#[test]
+fn a_landmark_survives_where_it_would_be_collapsed() {
+    let outlines = vec![wavy(200, 3, 0.05, 0.0), wavy(160, 3, 0.05, 0.4)];
+    let free = simplify(
+        &outlines,
+        &[Correspondence::identity(2, 64)],
+        &[],
+        &SimplifyOptions::default(),
+    );
+    let rows: Vec<Vec<f64>> = (0..40).map(|k| vec![f64::from(k) / 40.0; 2]).collect();
+    let pinned = simplify(
+        &outlines,
+        &[Correspondence::identity(2, 64)],
+        &rows,
+        &SimplifyOptions::default(),
+    );
+    let (free, pinned) = (free.expect("simplified"), pinned.expect("simplified"));
+    assert!(
+        free.report.vertices < 40 && pinned.report.vertices >= 40,
+        "{free:?} {pinned:?}"
+    );
+}
+
+#[test]
+fn bad_input_is_refused() {
+    let outlines = vec![wavy(60, 3, 0.1, 0.0)];
+    let options = SimplifyOptions::default().with_tolerance(f64::NAN);
+    let refused = simplify(&outlines, &[Correspondence::identity(1, 8)], &[], &options);
+    assert!(matches!(refused, Err(SimplifyError::BadTolerance(_))));
+    let refused = simplify(&outlines, &[], &[], &SimplifyOptions::default());
+    assert_eq!(
+        refused,
+        Err(SimplifyError::RingCount {
+            pose: 0,
+            found: 1,
+            expected: 0
+        })
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn every_pose_is_enclosed_closely_by_a_simple_polygon(
+        shapes in prop::collection::vec((60_usize..240, 2_usize..9, 0.0..0.6f64, 0.0..6.0f64), 1..5),
+        tolerance in 0.005..0.05f64,
+    ) {
+        let outlines: Vec<Outline> = shapes.iter().map(|&(n, waves, height, phase)| wavy(n, waves, height, phase)).collect();
+        let identity = Correspondence::identity(outlines.len(), 64);
+        let options = SimplifyOptions::default().with_tolerance(tolerance);
+        // `Outline::new` inside has already proven each polygon simple.
+        let simplified = simplify(&outlines, &[identity], &[], &options).expect("simplified");
+        let count = simplified.report.vertices;
+        for (outline, polygon) in outlines.iter().zip(&simplified.polygons) {
+            prop_assert_eq!(polygon.outer().len(), count);
+            prop_assert!(escape(outline, polygon) < 1e-12);
+            // An apex lies at most twice the tolerance off, and the polygon between vertices less.
+            let farthest = polygon.outer().points().iter()
+                .map(|&p| ArcLength::new(outline.outer()).nearest(p).1)
+                .fold(0.0, f64::max);
+            prop_assert!(farthest <= 2.0 * tolerance * outline.diagonal());
+        }
+    }
+}
