@@ -120,7 +120,11 @@ fn side_rays(canvas: &Canvas, figure: &Figure, side: Side) -> Vec<(String, Point
         placed(figure.torso, 64.0, -10.0),
     );
     add("knee_outside", leg.limb.place(0.5, 0.0), leg.limb.place(0.5, -sign));
-    add("turn_up_outside", leg.limb.place(0.88, 0.0), leg.limb.place(0.88, -sign));
+    add(
+        "turn_up_outside",
+        leg.limb.place(0.88, 0.0),
+        leg.limb.place(0.88, -sign),
+    );
     for (part, inside, towards) in SHOE {
         add(part, leg.foot * inside, leg.foot * towards);
     }
