@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let simplified = simplify(&outlines, &[matched.correspondence], &kept, &options)?;
     draw_polygons(&outlines, &simplified.polygons)?.save(&folder, "3-simplified")?;
 
-    let (bare, _) = triangulate(&simplified.polygons)?;
+    let (bare, _) = triangulate(&simplified.polygons, &[])?;
     draw_meshes(&bare, &bare.positions)?.save(&folder, "4-triangulated")?;
 
     let options = RefineOptions::default().with_edge_length(scene.mesh.edge_length);
