@@ -109,7 +109,7 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
             name: look.name,
             file: format!("{}.svg", look.name),
             at: look.at,
-            landmarks: landmarks(&line),
+            landmarks: landmarks(&head, &line),
         });
     }
     scene::save(
@@ -123,12 +123,35 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
     )
 }
 
-/// The points of the head that the artist names.
-fn landmarks(line: &[Point]) -> Vec<(String, Point)> {
-    OUTLINE_LANDMARKS
+/// The points of the head that the artist names: around its outline, then inside.
+fn landmarks(head: &Head, line: &[Point]) -> Vec<(String, Point)> {
+    let mut points: Vec<(String, Point)> = OUTLINE_LANDMARKS
         .iter()
         .map(|&(name, k)| (name.to_owned(), line[k]))
-        .collect()
+        .collect();
+    let mut add = |name: String, across_deg: f64, down: f64| points.push((name, head.on_face(across_deg, down)));
+    let corner = mouth_corner(head);
+    for (side, sign) in [("left", -1.0), ("right", 1.0)] {
+        let (width, end) = (head.mix(9.5, 11.5), head.mix(4.0, 18.6));
+        add(format!("{side}_eye_inside"), (24.0 - width) * sign, end);
+        add(format!("{side}_eye_outside"), (24.0 + width) * sign, end);
+        add(format!("{side}_eye_top"), 24.0 * sign, head.mix(-25.0, -17.0));
+        add(format!("{side}_eye_bottom"), 24.0 * sign, head.mix(33.0, -1.0));
+        let [inner, _, middle, outer] = brow(head, sign);
+        add(format!("{side}_brow_inside"), inner.0, inner.1);
+        add(format!("{side}_brow_middle"), middle.0, middle.1);
+        add(format!("{side}_brow_outside"), outer.0, outer.1);
+        add(format!("{side}_cheek"), 36.0 * sign, head.mix(70.0, 58.0));
+        add(format!("{side}_mouth_corner"), corner.0 * sign, corner.1);
+    }
+    add("mouth_top".to_owned(), 0.0, head.mix(96.0, 81.0));
+    add("mouth_bottom".to_owned(), 0.0, head.mix(106.0, 150.0));
+    for (name, k) in HAIRLINE_LANDMARKS {
+        let (across_deg, down) = fringe(head)[k];
+        add(name.to_owned(), across_deg, down);
+    }
+    points.push(("nose".to_owned(), nose_at(head, 0.0, 44.0)));
+    points
 }
 
 /// The ball that the features lie on.
@@ -288,6 +311,20 @@ const OUTLINE_LANDMARKS: [(&str, usize); 15] = [
     ("right_lobe", 29),
     ("right_jaw", 31),
 ];
+/// Which points of the hairline carry a landmark, from the right to the left.
+const HAIRLINE_LANDMARKS: [(&str, usize); 11] = [
+    ("right_sideburn", 1),
+    ("right_temple", 3),
+    ("fringe_1", 4),
+    ("fringe_2", 5),
+    ("fringe_3", 6),
+    ("fringe_4", 7),
+    ("fringe_5", 8),
+    ("fringe_6", 9),
+    ("fringe_7", 10),
+    ("left_temple", 11),
+    ("left_sideburn", 13),
+];
 /// Where in the outline the hair begins (behind the left ear) and ends (behind the right one).
 const HAIR_POINTS: std::ops::RangeInclusive<usize> = 8..=25;
 
@@ -417,25 +454,31 @@ fn draw_eyes(drawing: &mut Drawing, head: &Head) {
     }
 }
 
+/// The line along a brow, from its inner end.
+fn brow(head: &Head, sign: f64) -> [(f64, f64); 4] {
+    let up = head.mix(2.0, -5.0);
+    let arch = head.mix(-5.0, -12.0);
+    [
+        (13.0 * sign, -44.0 + up + head.mix(0.0, 3.0)),
+        (19.0 * sign, -48.0 + up + 0.8 * arch),
+        (26.0 * sign, -48.0 + up + arch),
+        (33.0 * sign, -40.0 + up + 0.4 * arch),
+    ]
+}
+
 fn draw_brows(drawing: &mut Drawing, head: &Head) {
     for (id, sign) in [("brow-left", -1.0), ("brow-right", 1.0)] {
-        let up = head.mix(2.0, -5.0);
-        let arch = head.mix(-5.0, -12.0);
-        let line = [
-            (13.0 * sign, -44.0 + up + head.mix(0.0, 3.0)),
-            (19.0 * sign, -48.0 + up + 0.8 * arch),
-            (26.0 * sign, -48.0 + up + arch),
-            (33.0 * sign, -40.0 + up + 0.4 * arch),
-        ];
-        drawing.fill(id, INK, head.stroke(&line, 12.0, 5.0));
+        drawing.fill(id, INK, head.stroke(&brow(head, sign), 12.0, 5.0));
     }
 }
 
+/// A point of the nose. It stands out of the ball, so it moves further than the rest.
+fn nose_at(head: &Head, across_deg: f64, down: f64) -> Point {
+    head.on_face(across_deg, down + head.mix(0.0, -4.0)) + Vec2::new(12.0 * head.turn(), 0.0)
+}
+
 fn draw_nose(drawing: &mut Drawing, head: &Head) {
-    // The nose stands out of the ball, so it moves further than the rest.
-    let out = 12.0 * head.turn();
-    let lift = head.mix(0.0, -4.0);
-    let place = |across: f64, down: f64| head.on_face(across, down + lift) + Vec2::new(out, 0.0);
+    let place = |across: f64, down: f64| nose_at(head, across, down);
     let ball = [
         place(-6.5, 44.0),
         place(-5.0, 35.0),
@@ -457,8 +500,13 @@ fn draw_nose(drawing: &mut Drawing, head: &Head) {
     drawing.fill("nose-shine", "#f0a488", smooth_closed(&shine));
 }
 
+/// The right corner of the mouth.
+fn mouth_corner(head: &Head) -> (f64, f64) {
+    (head.mix(15.0, 24.0), head.mix(88.0, 76.0))
+}
+
 fn draw_mouth(drawing: &mut Drawing, head: &Head) {
-    let corner = (head.mix(15.0, 24.0), head.mix(88.0, 76.0));
+    let corner = mouth_corner(head);
     let upper = [
         (-corner.0, corner.1),
         (-0.5 * corner.0, head.mix(97.0, 83.0)),
@@ -507,13 +555,16 @@ fn draw_mouth(drawing: &mut Drawing, head: &Head) {
     drawing.fill("tongue", if head.laugh > 0.5 { TONGUE } else { INK }, inner(&tongue));
 }
 
-fn draw_hair(drawing: &mut Drawing, head: &Head, outline: &[Point]) {
-    let crown = &outline[HAIR_POINTS];
-    // The hairline: sideburn, fringe in bumps, sideburn.
+/// How far the left and the right side of the head are turned away, 0 to 1.
+fn away(head: &Head) -> (f64, f64) {
+    ((-head.turn()).max(0.0), head.turn().max(0.0))
+}
+
+/// The hairline: sideburn, fringe in bumps, sideburn. The sideburn that turns away gets short.
+fn fringe(head: &Head) -> [(f64, f64); 15] {
     let lift = head.mix(0.0, -4.0);
-    // The sideburn that turns away gets short.
-    let (left, right) = ((-head.turn()).max(0.0), head.turn().max(0.0));
-    let fringe = [
+    let (left, right) = away(head);
+    [
         (66.0 - 20.0 * right, -14.0 - 12.0 * right),
         (58.0 - 14.0 * right, 18.0 - 54.0 * right),
         (52.0 - 9.0 * right, -30.0 - 19.0 * right),
@@ -529,8 +580,13 @@ fn draw_hair(drawing: &mut Drawing, head: &Head, outline: &[Point]) {
         (-52.0 + 9.0 * left, -30.0 - 19.0 * left),
         (-58.0 + 14.0 * left, 18.0 - 54.0 * left),
         (-66.0 + 20.0 * left, -14.0 - 12.0 * left),
-    ];
-    let line = head.ring(&fringe);
+    ]
+}
+
+fn draw_hair(drawing: &mut Drawing, head: &Head, outline: &[Point]) {
+    let crown = &outline[HAIR_POINTS];
+    let (left, right) = away(head);
+    let line = head.ring(&fringe(head));
     let mut border = BezPath::new();
     smooth_through(&mut border, crown);
     let mut under: Vec<Point> = vec![crown[crown.len() - 1]];

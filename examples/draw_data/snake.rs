@@ -159,6 +159,11 @@ fn landmarks() -> Vec<(String, Point)> {
     points.extend(side("left", 1.0));
     points.push(("tongue".to_owned(), tongue_side(TONGUE_LINE)[FORK]));
     points.extend(side("right", -1.0).into_iter().rev());
+    // The spine, but for the tail, which is too thin for a point inside.
+    points.extend((SPINE..STATIONS).map(|k| {
+        let s = FIRST_STATION + STATION_STEP * f64::from(k);
+        (format!("spine_{:02}", k + 1), at(s, 0.0))
+    }));
     points
 }
 
@@ -166,6 +171,8 @@ fn landmarks() -> Vec<(String, Point)> {
 const FIRST_STATION: f64 = 60.0;
 const STATION_STEP: f64 = 50.0;
 const STATIONS: u32 = 18;
+/// The first of them that has a point of the spine beside it.
+const SPINE: u32 = 3;
 
 /// A centre line, sampled evenly; before the tail and beyond the snout it goes straight on.
 struct CentreLine {

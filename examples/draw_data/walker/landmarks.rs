@@ -57,9 +57,51 @@ pub(super) fn landmarks(
     let seat = figure.torso * at(0.0, 0.0);
     rays.push(("crotch".to_owned(), seat, seat + thighs[0] + thighs[1]));
     rays.extend(side_rays(canvas, figure, Side::Left).into_iter().rev());
-    rays.into_iter()
-        .map(|(name, inside, towards)| Ok((name, canvas.edge(inside, towards)?)))
-        .collect()
+    let mut points: Vec<(String, Point)> = Vec::new();
+    for (name, inside, towards) in rays {
+        points.push((name, canvas.edge(inside, towards)?));
+    }
+    points.extend(inner_points(figure, posture));
+    Ok(points)
+}
+
+/// Landmarks inside the figure, where something is drawn that should not fade from one place to another.
+fn inner_points(figure: &Figure, posture: &Posture) -> Vec<(String, Point)> {
+    let mut points = Vec::new();
+    let mut add = |name: String, point: Point| points.push((name, point));
+    let (head, torso) = (figure.head, figure.torso);
+    add("pompom_middle".to_owned(), pompom_axis(head, posture.flop_deg)[0]);
+    add("brim_top".to_owned(), head * at(0.0, -142.0));
+    add("brim_bottom".to_owned(), head * at(0.0, -107.0));
+    add("nose".to_owned(), head * at(0.0, -44.0));
+    add("mouth_top".to_owned(), head * at(0.0, posture.mouth.lips()[0]));
+    add("mouth_bottom".to_owned(), head * at(0.0, posture.mouth.lips()[1]));
+    add("scarf_knot".to_owned(), torso * at(0.0, -124.0));
+    add("scarf_end".to_owned(), torso * at(26.0, -76.0));
+    add("stripe_middle".to_owned(), torso * at(0.0, -55.0));
+    add("hem_middle".to_owned(), torso * at(0.0, -5.0));
+    for (name, index, sign) in [("left", 0, -1.0), ("right", 1, 1.0)] {
+        let mut add = |part: &str, point: Point| add(format!("{name}_{part}"), point);
+        let (arm, leg) = (&figure.arms[index], &figure.legs[index]);
+        add("brim_end", head * at(68.0 * sign, -114.0));
+        add("fringe", head * at(36.0 * sign, -96.0));
+        add("eye", head * (at(35.0 * sign, -68.0) + posture.look));
+        add("cheek", head * at(54.0 * sign, -36.0));
+        add("mouth_corner", head * at(28.0 * sign, -30.5));
+        add("scarf_side", torso * at(40.0 * sign, -138.0));
+        add("stripe_end", torso * at(48.0 * sign, -61.0));
+        add("hem_end", torso * at(48.0 * sign, -8.0));
+        add("sleeve_middle", arm.limb.place(SLEEVE, 0.0));
+        add("cuff_start", arm.hand * at(-13.0, 0.0));
+        add("cuff_end", arm.hand * at(10.0, 0.0));
+        add("crease", arm.hand * at(33.0, 22.0));
+        add("knee_middle", leg.limb.place(0.5, 0.0));
+        add("turn_up_start", leg.limb.place(0.865, 0.0));
+        add("turn_up_end", leg.limb.place(1.0, 0.0));
+        add("tongue", leg.foot * at(18.0, 8.0));
+        add("cap", leg.foot * at(57.0, 22.0));
+    }
+    points
 }
 
 /// The rays of one side, from the cap down to the inner side of the leg.

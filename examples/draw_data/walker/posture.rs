@@ -44,6 +44,16 @@ pub(super) enum Mouth {
     Open,
 }
 
+impl Mouth {
+    /// How high the middles of its upper and lower line lie, in the head's coordinates.
+    pub(super) fn lips(self) -> [f64; 2] {
+        match self {
+            Self::Smile => [-21.0, -14.0],
+            Self::Open => [-29.0, -6.0],
+        }
+    }
+}
+
 /// One drawing of the figure.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Posture {
