@@ -37,7 +37,7 @@ const TONGUE: &str = "#f0717a";
 
 const SETTINGS: &str = "\
 [texture]
-sharpness = 0.8
+sharpness = 0.9
 ";
 
 const ANIMATION: &str = "\
@@ -46,13 +46,17 @@ fps = 24
 loop = true
 size = [480, 480]
 background = \"white\"
-# Round the square: turn, laugh, turn back laughing, calm down.
+# Round the square: turn, laugh, turn back laughing, calm down; every face is held for a moment.
 keys = [
   { time = 0.0, at = [0.0, 0.0] },
+  { time = 0.4, at = [0.0, 0.0] },
   { time = 0.9, at = [1.0, 0.0] },
-  { time = 1.8, at = [1.0, 1.0] },
-  { time = 2.7, at = [0.0, 1.0] },
-  { time = 3.6, at = [0.0, 0.0] },
+  { time = 1.3, at = [1.0, 0.0] },
+  { time = 1.65, at = [1.0, 1.0] },
+  { time = 2.05, at = [1.0, 1.0] },
+  { time = 2.55, at = [0.0, 1.0] },
+  { time = 2.95, at = [0.0, 1.0] },
+  { time = 3.4, at = [0.0, 0.0] },
 ]
 ";
 
@@ -132,20 +136,20 @@ fn landmarks(head: &Head, line: &[Point]) -> Vec<(String, Point)> {
     let mut add = |name: String, across_deg: f64, down: f64| points.push((name, head.on_face(across_deg, down)));
     let corner = mouth_corner(head);
     for (side, sign) in [("left", -1.0), ("right", 1.0)] {
-        let (width, end) = (head.mix(9.5, 11.5), head.mix(4.0, 18.6));
-        add(format!("{side}_eye_inside"), (24.0 - width) * sign, end);
-        add(format!("{side}_eye_outside"), (24.0 + width) * sign, end);
-        add(format!("{side}_eye_top"), 24.0 * sign, head.mix(-25.0, -17.0));
-        add(format!("{side}_eye_bottom"), 24.0 * sign, head.mix(33.0, -1.0));
+        // Around the eyes and the mouth, not along them: what opens and closes inside is not pulled about.
+        add(format!("{side}_eye_inside"), 11.0 * sign, 4.0);
+        add(format!("{side}_eye_outside"), 37.0 * sign, 4.0);
+        add(format!("{side}_eye_top"), 24.0 * sign, -31.0);
+        add(format!("{side}_eye_bottom"), 24.0 * sign, 38.0);
         let [inner, _, middle, outer] = brow(head, sign);
         add(format!("{side}_brow_inside"), inner.0, inner.1);
         add(format!("{side}_brow_middle"), middle.0, middle.1);
         add(format!("{side}_brow_outside"), outer.0, outer.1);
         add(format!("{side}_cheek"), 36.0 * sign, head.mix(70.0, 58.0));
-        add(format!("{side}_mouth_corner"), corner.0 * sign, corner.1);
+        add(format!("{side}_mouth_corner"), (corner.0 + 4.0) * sign, corner.1);
     }
-    add("mouth_top".to_owned(), 0.0, head.mix(96.0, 81.0));
-    add("mouth_bottom".to_owned(), 0.0, head.mix(106.0, 150.0));
+    add("mouth_top".to_owned(), 0.0, head.mix(86.0, 76.0));
+    add("mouth_bottom".to_owned(), 0.0, head.mix(118.0, 154.0));
     for (name, k) in HAIRLINE_LANDMARKS {
         let (across_deg, down) = fringe(head)[k];
         add(name.to_owned(), across_deg, down);
@@ -162,7 +166,7 @@ struct Head {
 }
 
 /// How far the head turns to either side.
-const TURN_DEG: f64 = 23.0;
+const TURN_DEG: f64 = 18.0;
 /// The ball's rim, degrees from the middle of the picture: nothing on the face goes round it.
 const RIM_DEG: f64 = 71.0;
 const BALL_WIDTH: f64 = 166.0;

@@ -42,8 +42,8 @@ const SAMPLES: usize = 1200;
 
 const SETTINGS: &str = "\
 [mesh]
-simplify = 0.01
-edge_length = 0.04
+simplify = 0.005
+edge_length = 0.035
 
 [texture]
 sharpness = 0.8
@@ -53,19 +53,21 @@ const ANIMATION: &str = "\
 [animation]
 fps = 24
 loop = true
-size = [640, 332]
+size = [960, 480]
 background = \"white\"
-# Slither once (the wave runs from the head to the tail), coil up, rest, uncoil.
+# Slither twice (the wave runs from the head to the tail), coil up, rest, uncoil.
 keys = [
   { time = 0.0, at = [0.0, 0.0] },
-  { time = 0.45, at = [-1.0, -0.6] },
-  { time = 0.95, at = [1.0, -0.6] },
-  { time = 1.4, at = [0.0, 0.0] },
-  { time = 1.9, at = [0.0, 1.0] },
-  { time = 2.4, at = [0.0, 2.0] },
-  { time = 2.7, at = [0.0, 2.0] },
-  { time = 3.2, at = [0.0, 1.0] },
-  { time = 3.7, at = [0.0, 0.0] },
+  { time = 0.5, at = [-1.0, -0.6] },
+  { time = 1.0, at = [1.0, -0.6] },
+  { time = 1.5, at = [-1.0, -0.6] },
+  { time = 2.0, at = [1.0, -0.6] },
+  { time = 2.5, at = [0.0, 0.0] },
+  { time = 3.0, at = [0.0, 1.0] },
+  { time = 3.5, at = [0.0, 2.0] },
+  { time = 4.1, at = [0.0, 2.0] },
+  { time = 4.6, at = [0.0, 1.0] },
+  { time = 5.1, at = [0.0, 0.0] },
 ]
 ";
 

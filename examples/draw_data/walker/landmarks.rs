@@ -48,7 +48,9 @@ pub(super) fn landmarks(
 ) -> Result<Vec<(String, Point)>, Box<dyn Error>> {
     let mut rays: Vec<(String, Point, Point)> = Vec::new();
     let [pompom, above] = pompom_axis(figure.head, posture.flop_deg);
+    let beside = |angle_deg: f64| Affine::rotate_about(f64::to_radians(angle_deg), pompom) * above;
     rays.push(("pompom".to_owned(), pompom, above));
+    rays.push(("right_pompom".to_owned(), pompom, beside(80.0)));
     rays.extend(side_rays(canvas, figure, Side::Right));
     let thighs = figure
         .legs
@@ -57,6 +59,7 @@ pub(super) fn landmarks(
     let seat = figure.torso * at(0.0, 0.0);
     rays.push(("crotch".to_owned(), seat, seat + thighs[0] + thighs[1]));
     rays.extend(side_rays(canvas, figure, Side::Left).into_iter().rev());
+    rays.push(("left_pompom".to_owned(), pompom, beside(-80.0)));
     let mut points: Vec<(String, Point)> = Vec::new();
     for (name, inside, towards) in rays {
         points.push((name, canvas.edge(inside, towards)?));
@@ -96,8 +99,11 @@ fn inner_points(figure: &Figure, posture: &Posture) -> Vec<(String, Point)> {
         add("cuff_end", arm.hand * at(10.0, 0.0));
         add("crease", arm.hand * at(33.0, 22.0));
         add("knee_middle", leg.limb.place(0.5, 0.0));
-        add("turn_up_start", leg.limb.place(0.865, 0.0));
-        add("turn_up_end", leg.limb.place(1.0, 0.0));
+        // The corners of the turned-up hem, a little inside.
+        add("turn_up_start_inside", leg.limb.place(0.865, 0.6 * sign));
+        add("turn_up_start_outside", leg.limb.place(0.865, -0.6 * sign));
+        add("turn_up_end_inside", leg.limb.place(1.0, 0.6 * sign));
+        add("turn_up_end_outside", leg.limb.place(1.0, -0.6 * sign));
         add("tongue", leg.foot * at(18.0, 8.0));
         add("cap", leg.foot * at(57.0, 22.0));
     }
@@ -164,13 +170,13 @@ fn side_rays(canvas: &Canvas, figure: &Figure, side: Side) -> Vec<(String, Point
     add("knee_outside", leg.limb.place(0.5, 0.0), leg.limb.place(0.5, -sign));
     add(
         "turn_up_outside",
-        leg.limb.place(0.88, 0.0),
-        leg.limb.place(0.88, -sign),
+        leg.limb.place(0.93, 0.0),
+        leg.limb.place(0.93, -sign),
     );
     for (part, inside, towards) in SHOE {
         add(part, leg.foot * inside, leg.foot * towards);
     }
-    add("turn_up_inside", leg.limb.place(0.88, 0.0), leg.limb.place(0.88, sign));
+    add("turn_up_inside", leg.limb.place(0.93, 0.0), leg.limb.place(0.93, sign));
     add("knee_inside", leg.limb.place(0.5, 0.0), leg.limb.place(0.5, sign));
     rays
 }

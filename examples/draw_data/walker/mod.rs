@@ -37,26 +37,34 @@ fps = 24
 loop = true
 size = [480, 540]
 background = \"white\"
-# Two steps to either side with a little hop between them, a jump, a wave.
+# Two steps to either side with a little hop between them, a jump, a wave; every pose is held for a moment.
 keys = [
   { time = 0.0, at = [0.0, 0.0] },
-  { time = 0.35, at = [-1.0, 0.0] },
-  { time = 0.7, at = [0.0, 0.15] },
+  { time = 0.3, at = [-1.0, 0.0] },
+  { time = 0.45, at = [-1.0, 0.0] },
+  { time = 0.75, at = [0.0, 0.15] },
   { time = 1.05, at = [1.0, 0.0] },
-  { time = 1.4, at = [0.0, 0.15] },
-  { time = 1.75, at = [-1.0, 0.0] },
-  { time = 2.1, at = [0.0, 0.15] },
-  { time = 2.45, at = [1.0, 0.0] },
-  { time = 2.85, at = [0.0, 0.0] },
-  { time = 3.2, at = [0.0, 1.0] },
-  { time = 3.35, at = [0.0, 1.0] },
-  { time = 3.7, at = [0.0, 0.0] },
-  { time = 4.15, at = [0.0, -1.0] },
-  { time = 4.4, at = [0.0, -0.72] },
-  { time = 4.65, at = [0.0, -1.0] },
-  { time = 4.9, at = [0.0, -0.72] },
-  { time = 5.15, at = [0.0, -1.0] },
-  { time = 5.7, at = [0.0, 0.0] },
+  { time = 1.2, at = [1.0, 0.0] },
+  { time = 1.5, at = [0.0, 0.15] },
+  { time = 1.8, at = [-1.0, 0.0] },
+  { time = 1.95, at = [-1.0, 0.0] },
+  { time = 2.25, at = [0.0, 0.15] },
+  { time = 2.55, at = [1.0, 0.0] },
+  { time = 2.7, at = [1.0, 0.0] },
+  { time = 3.0, at = [0.0, 0.0] },
+  { time = 3.2, at = [0.0, 0.0] },
+  { time = 3.5, at = [0.0, 1.0] },
+  { time = 3.75, at = [0.0, 1.0] },
+  { time = 4.05, at = [0.0, 0.0] },
+  { time = 4.25, at = [0.0, 0.0] },
+  { time = 4.6, at = [0.0, -1.0] },
+  { time = 4.8, at = [0.0, -0.76] },
+  { time = 5.0, at = [0.0, -1.0] },
+  { time = 5.2, at = [0.0, -0.76] },
+  { time = 5.4, at = [0.0, -1.0] },
+  { time = 5.65, at = [0.0, -1.0] },
+  { time = 6.0, at = [0.0, 0.0] },
+  { time = 6.2, at = [0.0, 0.0] },
 ]
 ";
 
