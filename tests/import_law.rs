@@ -16,7 +16,8 @@ const STAGES: [(&str, &[&str]); 10] = [
     ("blend", &["pose"]),
     ("texture", &[]),
     ("render", &["input", "matching", "pose"]),
-    ("scene", &[]),
+    // The scene file names the blend's own options.
+    ("scene", &["blend"]),
     ("export", &["render"]),
 ];
 
@@ -41,6 +42,13 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     }
     files.sort();
     files
+}
+
+/// The name of the folder or file directly below `root` that holds `file`, and its path from there.
+fn place_of<'a>(file: &'a Path, root: &Path) -> (String, &'a Path) {
+    let inside = file.strip_prefix(root).expect("below src");
+    let first = inside.components().next().expect("a name");
+    (first.as_os_str().to_string_lossy().into_owned(), inside)
 }
 
 /// Every path after `crate::` in a file, as its first two segments; braces are expanded one level.
@@ -75,14 +83,7 @@ fn every_import_obeys_the_law() {
     let mut broken = Vec::new();
     let mut paths = 0;
     for file in sources(&root) {
-        let inside = file.strip_prefix(&root).expect("below src");
-        let own = inside
-            .components()
-            .next()
-            .expect("a name")
-            .as_os_str()
-            .to_string_lossy()
-            .into_owned();
+        let (own, inside) = place_of(&file, &root);
         let text = std::fs::read_to_string(&file).expect("readable");
         for (module, item) in crate_paths(&text) {
             paths += 1;
@@ -123,14 +124,7 @@ fn files_are_touched_only_where_the_law_allows() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let may = ["input", "scene", "export", "cli", "main.rs"];
     for file in sources(&root) {
-        let inside = file.strip_prefix(&root).expect("below src");
-        let own = inside
-            .components()
-            .next()
-            .expect("a name")
-            .as_os_str()
-            .to_string_lossy()
-            .into_owned();
+        let (own, inside) = place_of(&file, &root);
         let text = std::fs::read_to_string(&file).expect("readable");
         let reaches = ["std::fs", "std::env", "std::time", "File::open"]
             .iter()

@@ -7,7 +7,7 @@ use crate::input::Drawing;
 use crate::math::Point;
 use crate::pose::Mapping;
 use crate::render::{Camera, Frame, Painter, Silhouette, Texture};
-use crate::scene::{Anchor, Animation, Background, BlendReference, Scene, Stretch};
+use crate::scene::{Anchor, Animation, Background, Scene};
 use crate::texture::texture_weights;
 use crate::weights::WeightProvider;
 
@@ -113,15 +113,8 @@ impl Character {
 
 fn blend_options(scene: &Scene, mapping: &Mapping) -> BlendOptions {
     BlendOptions {
-        reference: match scene.blend.reference {
-            BlendReference::Canonical => blend::Reference::Canonical,
-            BlendReference::Pose(pose) => blend::Reference::Pose(pose),
-        },
-        stretch: match scene.blend.stretch {
-            Stretch::Linear => blend::Stretch::Linear,
-            Stretch::Limited => blend::Stretch::Limited,
-            Stretch::Log => blend::Stretch::Log,
-        },
+        reference: scene.blend.reference,
+        stretch: scene.blend.stretch,
         anchor: match scene.blend.anchor {
             Anchor::Centroid => blend::Anchor::Centroid,
             Anchor::Landmark(landmark) => blend::Anchor::Vertex(nearest_vertex(scene, mapping, landmark)),

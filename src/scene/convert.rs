@@ -11,9 +11,10 @@ use toml::Spanned;
 use super::error::{SceneError, SceneProblem};
 use super::file::SceneFile;
 use super::settings::{
-    Anchor, BlendReference, BlendSettings, Holes, InputSettings, MeshSettings, PoseSpaceSettings, Provider, PseudoPose,
-    Radial, Scene, SceneLandmark, Stretch,
+    Anchor, BlendSettings, Holes, InputSettings, MeshSettings, PoseSpaceSettings, Provider, PseudoPose, Radial, Scene,
+    SceneLandmark,
 };
+use crate::blend::{Reference, Stretch};
 
 /// The version of the format.
 const VERSION: i64 = 1;
@@ -307,9 +308,9 @@ impl Reader<'_> {
         }
         let reference = match &table.reference {
             Some(name) if name.get_ref() != "canonical" => {
-                BlendReference::Pose(self.pose_index(name, "[blend] reference", names)?)
+                Reference::Pose(self.pose_index(name, "[blend] reference", names)?)
             }
-            _ => BlendReference::Canonical,
+            _ => Reference::Canonical,
         };
         let anchor = match &table.anchor {
             Some(name) if name.get_ref() != "centroid" => {

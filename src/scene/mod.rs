@@ -18,6 +18,6 @@ pub use animation::{Animation, Key};
 pub use error::{SceneError, SceneProblem};
 pub use new::{NewPose, scene_text};
 pub use settings::{
-    Anchor, Background, BlendReference, BlendSettings, Facing, Holes, InputSettings, MeshSettings, PoseSpaceSettings,
-    Provider, PseudoPose, Radial, Scene, SceneLandmark, ScenePose, Stretch,
+    Anchor, Background, BlendSettings, Facing, Holes, InputSettings, MeshSettings, PoseSpaceSettings, Provider,
+    PseudoPose, Radial, Scene, SceneLandmark, ScenePose,
 };

@@ -1,5 +1,6 @@
 //! The validated scene.
 
+use crate::blend::{Reference, Stretch};
 use std::path::PathBuf;
 
 use super::Animation;
@@ -124,28 +125,6 @@ impl Default for PoseSpaceSettings {
     }
 }
 
-/// From which pose transformations are measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum BlendReference {
-    /// An abstract mean, so that no pose is preferred.
-    #[default]
-    Canonical,
-    /// The pose of this index (the form of NWM 4.2).
-    Pose(usize),
-}
-
-/// How stretches are blended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Stretch {
-    /// Linearly.
-    #[default]
-    Linear,
-    /// With the shear limiting of NWM 4.2.
-    Limited,
-    /// In the logarithm, positive for every weight.
-    Log,
-}
-
 /// What keeps the blended shape in its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Anchor {
@@ -160,7 +139,7 @@ pub enum Anchor {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct BlendSettings {
     /// From which pose.
-    pub reference: BlendReference,
+    pub reference: Reference,
     /// How stretches are blended.
     pub stretch: Stretch,
     /// What stays in place.

@@ -80,7 +80,7 @@ keys = [ { time = 0, at = [0, 0] }, { time = 2.0, at = [1, 1] } ]
     let scene = parse(text).expect("a scene");
     assert_eq!(scene.reference, Some(0));
     assert_eq!(scene.input.holes, Holes::Fill);
-    assert_eq!(scene.blend.reference, BlendReference::Pose(1));
+    assert_eq!(scene.blend.reference, Reference::Pose(1));
     assert_eq!(scene.blend.anchor, Anchor::Landmark(0));
     assert_eq!((scene.poses[0].facing, scene.poses[0].turns), (Facing::Mirrored, -1));
     assert_eq!(scene.poses[1].element.as_deref(), Some("body"));
