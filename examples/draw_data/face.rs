@@ -133,12 +133,16 @@ fn landmarks(head: &Head, line: &[Point]) -> Vec<(String, Point)> {
         .iter()
         .map(|&(name, k)| (name.to_owned(), line[k]))
         .collect();
+    let inside = grown(&outline(head), -UNDER_LINE);
+    points.extend(RIM_LANDMARKS.map(|(name, k)| (name.to_owned(), inside[k])));
     let mut add = |name: String, across_deg: f64, down: f64| points.push((name, head.on_face(across_deg, down)));
     let corner = mouth_corner(head);
     for (side, sign) in [("left", -1.0), ("right", 1.0)] {
         // Around the eyes and the mouth, not along them: what opens and closes inside is not pulled about.
         add(format!("{side}_eye_inside"), 11.0 * sign, 4.0);
         add(format!("{side}_eye_outside"), 37.0 * sign, 4.0);
+        add(format!("{side}_eye_outside_top"), 33.5 * sign, -20.0);
+        add(format!("{side}_eye_outside_bottom"), 33.5 * sign, 28.0);
         add(format!("{side}_eye_top"), 24.0 * sign, -31.0);
         add(format!("{side}_eye_bottom"), 24.0 * sign, 38.0);
         let [inner, _, middle, outer] = brow(head, sign);
@@ -166,7 +170,7 @@ struct Head {
 }
 
 /// How far the head turns to either side.
-const TURN_DEG: f64 = 18.0;
+const TURN_DEG: f64 = 16.0;
 /// The ball's rim, degrees from the middle of the picture: nothing on the face goes round it.
 const RIM_DEG: f64 = 71.0;
 const BALL_WIDTH: f64 = 166.0;
@@ -315,6 +319,15 @@ const OUTLINE_LANDMARKS: [(&str, usize); 15] = [
     ("right_lobe", 29),
     ("right_jaw", 31),
 ];
+/// Which points of the outline carry a second landmark, [`UNDER_LINE`] inside the ink: it keeps the line's thickness
+/// where the hair behind it is stretched.
+const RIM_LANDMARKS: [(&str, usize); 4] = [
+    ("left_temple_inside", 9),
+    ("left_hair_inside", 10),
+    ("right_hair_inside", 23),
+    ("right_temple_inside", 24),
+];
+const UNDER_LINE: f64 = 4.5;
 /// Which points of the hairline carry a landmark, from the right to the left.
 const HAIRLINE_LANDMARKS: [(&str, usize); 11] = [
     ("right_sideburn", 1),
