@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
     let rings: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
     let curves: Vec<ArcLength> = rings.iter().map(ArcLength::new).collect();
-    let landmarks = landmarks(&scene, &curves);
+    let (landmarks, inside) = landmarks(&scene, &curves, &outlines);
     let options = MatchOptions {
         reference: scene.reference,
         ..MatchOptions::default()
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let simplified = simplify(&outlines, &[matched.correspondence], &kept, &options)?;
     draw_polygons(&outlines, &simplified.polygons)?.save(&folder, "3-simplified")?;
 
-    let (bare, _) = triangulate(&simplified.polygons, &[])?;
+    let (bare, _) = triangulate(&simplified.polygons, &inside)?;
     draw_meshes(&bare, &bare.positions)?.save(&folder, "4-triangulated")?;
 
     let options = RefineOptions::default().with_edge_length(scene.mesh.edge_length);
@@ -87,19 +87,27 @@ fn main() -> Result<(), Box<dyn Error>> {
     strip.save(&folder, "8-frames")
 }
 
-/// The scene's landmarks as arc-length parameters of the outlines that they lie on.
-fn landmarks(scene: &Scene, curves: &[ArcLength]) -> Vec<Landmark> {
-    let on_curves = |places: &[Option<Point>]| {
-        let pairs = places.iter().zip(curves);
-        pairs.map(|(place, curve)| place.map(|p| curve.nearest(p).0)).collect()
-    };
-    let landmarks = scene.landmarks.iter();
-    landmarks
-        .map(|landmark| Landmark {
-            name: landmark.name.clone(),
-            at: on_curves(&landmark.at),
-        })
-        .collect()
+/// The scene's landmarks: those on the outlines as arc-length parameters, and those inside as places.
+fn landmarks(scene: &Scene, curves: &[ArcLength], outlines: &[Outline]) -> (Vec<Landmark>, Vec<Vec<Point>>) {
+    let (mut on_outline, mut inside) = (Vec::new(), Vec::new());
+    for landmark in &scene.landmarks {
+        let places: Option<Vec<Point>> = landmark.at.iter().copied().collect();
+        let deep = |(pose, place): (usize, &Point)| {
+            let (_, distance) = curves[pose].nearest(*place);
+            outlines[pose].contains(*place) && distance > 0.01 * outlines[pose].diagonal()
+        };
+        match places.filter(|places| places.iter().enumerate().all(deep)) {
+            Some(places) => inside.push(places),
+            None => {
+                let pairs = landmark.at.iter().zip(curves);
+                on_outline.push(Landmark {
+                    name: landmark.name.clone(),
+                    at: pairs.map(|(place, curve)| place.map(|p| curve.nearest(p).0)).collect(),
+                });
+            }
+        }
+    }
+    (on_outline, inside)
 }
 
 /// Weights that lead from the wave to the jump, without the poses between them.
