@@ -5,6 +5,7 @@
 
 use super::ear_clipping::triangulate_polygon;
 use super::line_of_sight;
+use super::patch;
 use super::visibility::{Relation, Sight};
 use crate::compatible::editable::EditableMesh;
 use crate::mesh::geometry;
@@ -17,6 +18,20 @@ const PASSES: usize = 20;
 
 /// Removes what interior vertices it can, of those numbered `boundary_count` and up; returns how many.
 pub(super) fn decimate(mesh: &mut EditableMesh, boundary_count: usize) -> usize {
+    let mut removed = 0;
+    for _ in 0..PASSES {
+        removed += remove_all(mesh, boundary_count);
+        let saved = patch::resolve(mesh, boundary_count);
+        removed += saved;
+        if saved == 0 {
+            break;
+        }
+    }
+    removed
+}
+
+/// Removes vertices one by one and in pairs until none goes.
+fn remove_all(mesh: &mut EditableMesh, boundary_count: usize) -> usize {
     let mut removed = 0;
     for _ in 0..PASSES {
         let before = removed;

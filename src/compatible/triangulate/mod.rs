@@ -26,9 +26,11 @@ mod bridge;
 mod chord_overlay;
 mod convex;
 mod decimate;
+mod division;
 mod ear_clipping;
 mod line_of_sight;
 mod link_path;
+mod patch;
 mod single_steiner;
 mod visibility;
 
@@ -37,12 +39,10 @@ mod tests;
 
 use super::CompatibleMesh;
 use super::editable::EditableMesh;
-use crate::math::{Point, point};
-use crate::mesh::{TopologyError, geometry};
+use crate::math::Point;
+use crate::mesh::TopologyError;
 use crate::outline::Outline;
-use ear_clipping::triangulate_polygon;
-use single_steiner::Hub;
-use visibility::{Relation, Sight};
+use division::Division;
 
 /// Steiner points by the stage that added them, and how many were taken out again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -180,11 +180,7 @@ pub fn triangulate(
         Some(landmark) => TriangulateError::LandmarkHidden { landmark },
         None => TriangulateError::NoBridge { hole: ring - 1 },
     })?;
-    let mut division = Division {
-        positions,
-        triangles: Vec::new(),
-        report: TriangulateReport::default(),
-    };
+    let mut division = Division::new(positions);
     division.solve(walk)?;
 
     let mut mesh = EditableMesh::new(division.positions, &division.triangles);
@@ -192,185 +188,4 @@ pub fn triangulate(
     report.decimated = decimate::decimate(&mut mesh, count);
     let steiner = report.single + report.link + report.overlay - report.decimated;
     Ok((mesh.finish(&rings, &landmark_vertices, steiner)?, report))
-}
-
-/// The divide-and-conquer state: all vertices so far, and the triangles that are settled.
-struct Division {
-    positions: Vec<Vec<Point>>,
-    triangles: Vec<[usize; 3]>,
-    report: TriangulateReport,
-}
-
-impl Division {
-    /// Triangulates a piece and everything it falls into.
-    fn solve(&mut self, piece: Vec<usize>) -> Result<(), TriangulateError> {
-        let mut pieces = vec![piece];
-        while let Some(piece) = pieces.pop() {
-            if let [a, b, c] = piece[..] {
-                self.triangles.push([a, b, c]);
-                continue;
-            }
-            let sights = self.look(&piece)?;
-            let common = common_pairs(&sights);
-            let quality = |triangle: [usize; 3]| {
-                sights
-                    .iter()
-                    .map(|sight| geometry::smallest_angle_rad(geometry::corners(&sight.points, triangle)))
-                    .fold(f64::INFINITY, f64::min)
-            };
-            if let Some(triangles) = line_of_sight::best_triangulation(piece.len(), &common, quality) {
-                self.triangles
-                    .extend(triangles.into_iter().map(|t| t.map(|k| piece[k])));
-                continue;
-            }
-            let diagonals = line_of_sight::largest_partition(piece.len(), &clear_pairs(&sights, common));
-            if diagonals.is_empty() {
-                self.solve_stuck(&piece, &sights)?;
-            } else {
-                let faces = line_of_sight::faces(piece.len(), &diagonals);
-                pieces.extend(
-                    faces
-                        .into_iter()
-                        .map(|face| face.into_iter().map(|k| piece[k]).collect()),
-                );
-            }
-        }
-        Ok(())
-    }
-
-    /// Triangulates a piece without any common diagonal: over a hub or a path, and where the parts that leaves are too
-    /// narrow, or there is neither, by the overlay.
-    fn solve_stuck(&mut self, piece: &[usize], sights: &[Sight]) -> Result<(), TriangulateError> {
-        let (vertices, triangles, report) = (self.positions[0].len(), self.triangles.len(), self.report);
-        if self.solve_divided(piece, sights) {
-            return Ok(());
-        }
-        for positions in &mut self.positions {
-            positions.truncate(vertices);
-        }
-        self.triangles.truncate(triangles);
-        self.report = report;
-
-        let overlay = chord_overlay::overlay(sights).ok_or_else(|| self.too_narrow(piece))?;
-        self.report.overlay += overlay.steiner_count();
-        for (positions, added) in self.positions.iter_mut().zip(&overlay.points) {
-            positions.extend_from_slice(added);
-        }
-        let global = |k: usize| {
-            if k < piece.len() {
-                piece[k]
-            } else {
-                vertices + k - piece.len()
-            }
-        };
-        self.triangles.extend(overlay.triangles.iter().map(|t| t.map(global)));
-        Ok(())
-    }
-
-    /// Divides a stuck piece and triangulates the parts; false if there is no division, or a part cannot be done.
-    fn solve_divided(&mut self, piece: &[usize], sights: &[Sight]) -> bool {
-        let mut parts = Vec::new();
-        if let Some(hub) = single_steiner::star(sights).or_else(|| single_steiner::best_hub(sights)) {
-            self.report.single += 1;
-            self.join_hub(piece, &hub, &mut parts);
-        } else if let Some(path) = link_path::shortest_path(sights) {
-            self.report.link += path.interior[0].len();
-            self.join_path(piece, &path, &mut parts);
-        } else {
-            return false;
-        }
-        parts.into_iter().all(|part| self.solve(part).is_ok())
-    }
-
-    fn join_hub(&mut self, piece: &[usize], hub: &Hub, pieces: &mut Vec<Vec<usize>>) {
-        let vertex = self.add_vertex(hub.points.iter().copied());
-        for (s, &from) in hub.spokes.iter().enumerate() {
-            let to = hub.spokes[(s + 1) % hub.spokes.len()];
-            let mut part = chain(piece, from, to);
-            part.push(vertex);
-            pieces.push(part);
-        }
-    }
-
-    fn join_path(&mut self, piece: &[usize], path: &link_path::LinkPath, pieces: &mut Vec<Vec<usize>>) {
-        let length = path.interior[0].len();
-        let vertices: Vec<usize> = (0..length)
-            .map(|k| self.add_vertex(path.interior.iter().map(|points| points[k])))
-            .collect();
-        let mut first = chain(piece, path.from, path.to);
-        first.extend(vertices.iter().rev());
-        let mut second = chain(piece, path.to, path.from);
-        second.extend(&vertices);
-        pieces.push(first);
-        pieces.push(second);
-    }
-
-    fn add_vertex(&mut self, places: impl IntoIterator<Item = Point>) -> usize {
-        for (positions, place) in self.positions.iter_mut().zip(places) {
-            positions.push(place);
-        }
-        self.positions[0].len() - 1
-    }
-
-    fn look(&self, piece: &[usize]) -> Result<Vec<Sight>, TriangulateError> {
-        self.positions
-            .iter()
-            .map(|positions| {
-                let points: Vec<Point> = piece.iter().map(|&v| positions[v]).collect();
-                let triangles = triangulate_polygon(&points).ok_or_else(|| self.too_narrow(piece))?;
-                Ok(Sight::new(points, triangles))
-            })
-            .collect()
-    }
-
-    fn too_narrow(&self, piece: &[usize]) -> TriangulateError {
-        let place = self.positions[0][piece[0]];
-        TriangulateError::TooNarrow {
-            pose: 0,
-            x: place.x,
-            y: place.y,
-        }
-    }
-}
-
-/// The pairs of vertices with line of sight in every pose.
-fn common_pairs(sights: &[Sight]) -> Relation {
-    let mut common = Relation::full(sights[0].points.len());
-    for sight in sights {
-        common.intersect(&sight.visible_pairs());
-    }
-    common
-}
-
-/// A diagonal is clear if no other vertex is nearer to it than this fraction of its length. A diagonal along a straight
-/// side, whose vertices are collinear up to rounding, may have line of sight; the face it cuts off has no area.
-const CLEAR: f64 = 1e-9;
-
-/// The pairs that stay clear of all other vertices, polygon edges included.
-fn clear_pairs(sights: &[Sight], mut common: Relation) -> Relation {
-    let count = sights[0].points.len();
-    for i in 0..count {
-        for j in i + 2..count {
-            let is_clear = |points: &[Point]| {
-                (0..count).filter(|&k| k != i && k != j).all(|k| {
-                    let distance = point::nearest_on_segment(points[k], points[i], points[j]).1;
-                    distance > CLEAR * (points[j] - points[i]).norm()
-                        || points[k] == points[i]
-                        || points[k] == points[j]
-                })
-            };
-            if (i, j) != (0, count - 1) && common.get(i, j) && !sights.iter().all(|sight| is_clear(&sight.points)) {
-                common.clear(i, j);
-            }
-        }
-    }
-    common
-}
-
-/// The vertices of a cyclic list from position `from` to position `to`, both included.
-fn chain(piece: &[usize], from: usize, to: usize) -> Vec<usize> {
-    let count = piece.len();
-    (0..=(to + count - from) % count)
-        .map(|k| piece[(from + k) % count])
-        .collect()
 }

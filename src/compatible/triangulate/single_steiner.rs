@@ -21,6 +21,9 @@ const CANDIDATES: usize = 64;
 /// proportion.
 const STARTING_PAIRS: usize = 150;
 
+/// Likewise in a narrow search.
+const FEW_STARTING_PAIRS: usize = 12;
+
 /// Larger polygons go to the overlay.
 const LARGEST_POLYGON: usize = 256;
 
@@ -57,11 +60,20 @@ pub(super) fn star(sights: &[Sight]) -> Option<Hub> {
     })
 }
 
-/// The hub that the most vertices see in all poses, if it divides the polygon into smaller parts.
-pub(super) fn best_hub(sights: &[Sight]) -> Option<Hub> {
-    let count = sights.first()?.points.len();
+/// How many starting pairs are tried.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Search {
+    /// [`STARTING_PAIRS`].
+    Wide,
+    /// [`FEW_STARTING_PAIRS`].
+    Narrow,
+}
+
+/// Up to `most` hubs that divide the polygon into smaller parts, those that the most vertices see in all poses first.
+pub(super) fn hubs(sights: &[Sight], search: Search, most: usize) -> Vec<Hub> {
+    let count = sights.first().map_or(0, |sight| sight.points.len());
     if count > LARGEST_POLYGON {
-        return None;
+        return Vec::new();
     }
     let rooms: Vec<Rooms> = sights.iter().map(Rooms::new).collect();
     let mut starts: Vec<(f64, usize, usize)> = Vec::new();
@@ -78,18 +90,31 @@ pub(super) fn best_hub(sights: &[Sight]) -> Option<Hub> {
         }
     }
     starts.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    starts
+    let pairs = match search {
+        Search::Wide => STARTING_PAIRS / (stride * stride),
+        Search::Narrow => FEW_STARTING_PAIRS,
+    };
+    let mut grown: Vec<(Vec<usize>, f64)> = starts
         .iter()
-        .take(STARTING_PAIRS / (stride * stride))
+        .take(pairs)
         .filter_map(|&(_, i, j)| grown_hub(&rooms, i, j, count))
-        .max_by(|a, b| a.0.len().cmp(&b.0.len()).then(a.1.total_cmp(&b.1)).then(b.0.cmp(&a.0)))
-        .and_then(|(spokes, _)| {
-            let points = rooms
-                .iter()
-                .map(|room| room.place(&spokes))
-                .collect::<Option<Vec<Point>>>()?;
-            Some(Hub { points, spokes })
-        })
+        .collect();
+    grown.sort_by(|a, b| b.0.len().cmp(&a.0.len()).then(b.1.total_cmp(&a.1)).then(a.0.cmp(&b.0)));
+    let mut hubs: Vec<Hub> = Vec::new();
+    for (spokes, _) in grown {
+        if hubs.len() == most {
+            break;
+        }
+        if hubs.iter().any(|hub| hub.spokes == spokes) {
+            continue;
+        }
+        let points = rooms
+            .iter()
+            .map(|room| room.place(&spokes))
+            .collect::<Option<Vec<Point>>>();
+        hubs.extend(points.map(|points| Hub { points, spokes }));
+    }
+    hubs
 }
 
 /// From the pair `i j`, all vertices that can be added one after another; `None` if a part would not shrink.
@@ -160,6 +185,9 @@ impl<'a> Rooms<'a> {
 
     /// The part of triangle `t` that all of `vertices` see.
     fn region(&self, t: usize, vertices: &[usize]) -> Option<Convex> {
+        if vertices.iter().any(|&v| self.views[t][v].is_none()) {
+            return None;
+        }
         let corners = self.sight.triangles[t].map(|v| self.sight.points[v]);
         let mut region = Convex::new(corners.to_vec());
         for &v in vertices {
@@ -244,7 +272,7 @@ mod tests {
         ]);
         let sights = [sight_of(shape.clone())];
         assert!(star(&sights).is_none());
-        let hub = best_hub(&sights).expect("a hub");
+        let hub = hubs(&sights, Search::Wide, 1).pop().expect("a hub");
         assert!(hub.spokes.len() >= 4, "{hub:?}");
         assert!(hub.spokes.iter().all(|&v| sees(&shape, v, hub.points[0])));
     }

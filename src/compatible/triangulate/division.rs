@@ -1,0 +1,328 @@
+//! The divide and conquer itself: a piece is triangulated, or divided into smaller ones, until none is left.
+//!
+//! A *stuck* piece is one without any common diagonal. It is divided over a hub or a path in a few ways, each carried
+//! through to the end; the one with the fewest Steiner points is kept. Where all fail, because the parts become too narrow
+//! for double precision, or where there is neither hub nor path, the overlay takes over, for this piece alone.
+
+use super::chord_overlay;
+use super::ear_clipping::triangulate_polygon;
+use super::line_of_sight;
+use super::link_path::{self, LinkPath};
+use super::single_steiner::{self, Hub};
+use super::visibility::{Relation, Sight};
+use super::{TriangulateError, TriangulateReport};
+use crate::math::{Point, point};
+use crate::mesh::geometry;
+
+/// How much is tried on a stuck piece.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Effort {
+    /// Several divisions, each carried through.
+    Thorough,
+    /// The first division only, and no path or overlay.
+    Quick,
+}
+
+/// Divisions of a stuck piece that are carried through to the end.
+const HUBS_TRIED: usize = 4;
+
+/// The state: all vertices so far, and the triangles that are settled.
+#[derive(Debug)]
+pub(super) struct Division {
+    pub(super) positions: Vec<Vec<Point>>,
+    pub(super) triangles: Vec<[usize; 3]>,
+    pub(super) report: TriangulateReport,
+    effort: Effort,
+    /// Vertices that may be reached in all.
+    most_vertices: usize,
+}
+
+/// A state to go back to.
+#[derive(Debug, Clone, Copy)]
+struct Mark {
+    vertices: usize,
+    triangles: usize,
+    report: TriangulateReport,
+}
+
+/// What was added since a mark.
+#[derive(Debug)]
+struct Solution {
+    positions: Vec<Vec<Point>>,
+    triangles: Vec<[usize; 3]>,
+    report: TriangulateReport,
+}
+
+impl Division {
+    pub(super) fn new(positions: Vec<Vec<Point>>) -> Self {
+        Self {
+            positions,
+            triangles: Vec::new(),
+            report: TriangulateReport::default(),
+            effort: Effort::Thorough,
+            most_vertices: usize::MAX,
+        }
+    }
+
+    /// For a piece that is worth solving only with at most `allowance` new vertices.
+    pub(super) fn within(positions: Vec<Vec<Point>>, allowance: usize, effort: Effort) -> Self {
+        let most_vertices = positions.first().map_or(0, Vec::len) + allowance;
+        Self {
+            effort,
+            most_vertices,
+            ..Self::new(positions)
+        }
+    }
+
+    /// Triangulates a piece and everything it falls into.
+    ///
+    /// # Errors
+    /// [`TriangulateError::TooNarrow`], also where the allowance is used up.
+    pub(super) fn solve(&mut self, piece: Vec<usize>) -> Result<(), TriangulateError> {
+        let mut pieces = vec![piece];
+        while let Some(piece) = pieces.pop() {
+            if let [a, b, c] = piece[..] {
+                self.triangles.push([a, b, c]);
+                continue;
+            }
+            let sights = self.look(&piece)?;
+            let common = common_pairs(&sights);
+            let quality = |triangle: [usize; 3]| {
+                sights
+                    .iter()
+                    .map(|sight| geometry::smallest_angle_rad(geometry::corners(&sight.points, triangle)))
+                    .fold(f64::INFINITY, f64::min)
+            };
+            if let Some(triangles) = line_of_sight::best_triangulation(piece.len(), &common, quality) {
+                self.triangles
+                    .extend(triangles.into_iter().map(|t| t.map(|k| piece[k])));
+                continue;
+            }
+            // Every stuck piece costs a Steiner point at least.
+            if self.vertex_count() >= self.most_vertices {
+                return Err(self.too_narrow(&piece));
+            }
+            let diagonals = line_of_sight::largest_partition(piece.len(), &clear_pairs(&sights, common));
+            if diagonals.is_empty() {
+                self.solve_stuck(&piece, &sights)?;
+            } else {
+                let faces = line_of_sight::faces(piece.len(), &diagonals);
+                pieces.extend(
+                    faces
+                        .into_iter()
+                        .map(|face| face.into_iter().map(|k| piece[k]).collect()),
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// Triangulates a piece without any common diagonal: over a hub or a path, and where the parts that leaves are too
+    /// narrow, or there is neither, by the overlay.
+    fn solve_stuck(&mut self, piece: &[usize], sights: &[Sight]) -> Result<(), TriangulateError> {
+        if let Some(hub) = single_steiner::star(sights) {
+            return self.solve_over_hub(piece, &hub);
+        }
+        let mark = self.mark();
+        let allowed = self.most_vertices;
+        let mut best: Option<Solution> = None;
+        let (effort, tried) = match self.effort {
+            Effort::Thorough => (single_steiner::Search::Wide, HUBS_TRIED),
+            Effort::Quick => (single_steiner::Search::Narrow, 1),
+        };
+        for hub in single_steiner::hubs(sights, effort, tried) {
+            let outer = self.effort;
+            if tried > 1 {
+                self.effort = Effort::Quick;
+            }
+            if self.solve_over_hub(piece, &hub).is_ok() {
+                self.most_vertices = self.vertex_count() - 1;
+                best = Some(self.take_since(mark));
+            } else {
+                self.back_to(mark);
+            }
+            self.effort = outer;
+        }
+        self.most_vertices = allowed;
+        if let Some(best) = best {
+            self.put(best);
+            return Ok(());
+        }
+        if self.effort == Effort::Thorough
+            && let Some(path) = link_path::shortest_path(sights)
+        {
+            if self.solve_over_path(piece, &path).is_ok() {
+                return Ok(());
+            }
+            self.back_to(mark);
+        }
+        self.solve_by_overlay(piece, sights)
+    }
+
+    fn solve_over_hub(&mut self, piece: &[usize], hub: &Hub) -> Result<(), TriangulateError> {
+        let vertex = self.add_vertices(std::slice::from_ref(&hub.points), piece)?;
+        self.report.single += 1;
+        for (s, &from) in hub.spokes.iter().enumerate() {
+            let to = hub.spokes[(s + 1) % hub.spokes.len()];
+            let mut part = chain(piece, from, to);
+            part.push(vertex);
+            self.solve(part)?;
+        }
+        Ok(())
+    }
+
+    fn solve_over_path(&mut self, piece: &[usize], path: &LinkPath) -> Result<(), TriangulateError> {
+        let length = path.interior[0].len();
+        let places: Vec<Vec<Point>> = (0..length)
+            .map(|k| path.interior.iter().map(|points| points[k]).collect())
+            .collect();
+        let start = self.add_vertices(&places, piece)?;
+        self.report.link += length;
+        let mut first = chain(piece, path.from, path.to);
+        first.extend((start..start + length).rev());
+        let mut second = chain(piece, path.to, path.from);
+        second.extend(start..start + length);
+        self.solve(first)?;
+        self.solve(second)
+    }
+
+    fn solve_by_overlay(&mut self, piece: &[usize], sights: &[Sight]) -> Result<(), TriangulateError> {
+        let overlay = chord_overlay::overlay(sights).ok_or_else(|| self.too_narrow(piece))?;
+        let count = overlay.steiner_count();
+        if self.vertex_count() + count > self.most_vertices {
+            return Err(self.too_narrow(piece));
+        }
+        let start = self.vertex_count();
+        self.report.overlay += count;
+        for (positions, added) in self.positions.iter_mut().zip(&overlay.points) {
+            positions.extend_from_slice(added);
+        }
+        let global = |k: usize| {
+            if k < piece.len() {
+                piece[k]
+            } else {
+                start + k - piece.len()
+            }
+        };
+        self.triangles.extend(overlay.triangles.iter().map(|t| t.map(global)));
+        Ok(())
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.positions[0].len()
+    }
+
+    /// Adds vertices given by their places per pose; returns the first one's number.
+    fn add_vertices(&mut self, places: &[Vec<Point>], piece: &[usize]) -> Result<usize, TriangulateError> {
+        let start = self.vertex_count();
+        if start + places.len() > self.most_vertices {
+            return Err(self.too_narrow(piece));
+        }
+        for place in places {
+            for (positions, &point) in self.positions.iter_mut().zip(place) {
+                positions.push(point);
+            }
+        }
+        Ok(start)
+    }
+
+    fn mark(&self) -> Mark {
+        Mark {
+            vertices: self.vertex_count(),
+            triangles: self.triangles.len(),
+            report: self.report,
+        }
+    }
+
+    fn back_to(&mut self, mark: Mark) {
+        for positions in &mut self.positions {
+            positions.truncate(mark.vertices);
+        }
+        self.triangles.truncate(mark.triangles);
+        self.report = mark.report;
+    }
+
+    fn take_since(&mut self, mark: Mark) -> Solution {
+        let solution = Solution {
+            positions: self
+                .positions
+                .iter()
+                .map(|positions| positions[mark.vertices..].to_vec())
+                .collect(),
+            triangles: self.triangles[mark.triangles..].to_vec(),
+            report: self.report,
+        };
+        self.back_to(mark);
+        solution
+    }
+
+    fn put(&mut self, solution: Solution) {
+        for (positions, added) in self.positions.iter_mut().zip(solution.positions) {
+            positions.extend(added);
+        }
+        self.triangles.extend(solution.triangles);
+        self.report = solution.report;
+    }
+
+    fn look(&self, piece: &[usize]) -> Result<Vec<Sight>, TriangulateError> {
+        self.positions
+            .iter()
+            .map(|positions| {
+                let points: Vec<Point> = piece.iter().map(|&v| positions[v]).collect();
+                let triangles = triangulate_polygon(&points).ok_or_else(|| self.too_narrow(piece))?;
+                Ok(Sight::new(points, triangles))
+            })
+            .collect()
+    }
+
+    fn too_narrow(&self, piece: &[usize]) -> TriangulateError {
+        let place = self.positions[0][piece[0]];
+        TriangulateError::TooNarrow {
+            pose: 0,
+            x: place.x,
+            y: place.y,
+        }
+    }
+}
+
+/// The pairs of vertices with line of sight in every pose.
+fn common_pairs(sights: &[Sight]) -> Relation {
+    let mut common = Relation::full(sights[0].points.len());
+    for sight in sights {
+        common.intersect(&sight.visible_pairs());
+    }
+    common
+}
+
+/// A diagonal is clear if no other vertex is nearer to it than this fraction of its length. A diagonal along a straight
+/// side, whose vertices are collinear up to rounding, may have line of sight; the face it cuts off has no area.
+const CLEAR: f64 = 1e-9;
+
+/// The pairs that stay clear of all other vertices, polygon edges included.
+fn clear_pairs(sights: &[Sight], mut common: Relation) -> Relation {
+    let count = sights[0].points.len();
+    for i in 0..count {
+        for j in i + 2..count {
+            let is_clear = |points: &[Point]| {
+                (0..count).filter(|&k| k != i && k != j).all(|k| {
+                    let distance = point::nearest_on_segment(points[k], points[i], points[j]).1;
+                    distance > CLEAR * (points[j] - points[i]).norm()
+                        || points[k] == points[i]
+                        || points[k] == points[j]
+                })
+            };
+            if (i, j) != (0, count - 1) && common.get(i, j) && !sights.iter().all(|sight| is_clear(&sight.points)) {
+                common.clear(i, j);
+            }
+        }
+    }
+    common
+}
+
+/// The vertices of a cyclic list from position `from` to position `to`, both included.
+fn chain(piece: &[usize], from: usize, to: usize) -> Vec<usize> {
+    let count = piece.len();
+    (0..=(to + count - from) % count)
+        .map(|k| piece[(from + k) % count])
+        .collect()
+}
