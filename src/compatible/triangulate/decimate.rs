@@ -5,7 +5,7 @@
 
 use super::ear_clipping::triangulate_polygon;
 use super::line_of_sight;
-use super::patch;
+use super::patch::Resolver;
 use super::visibility::{Relation, Sight};
 use crate::compatible::editable::EditableMesh;
 use crate::mesh::geometry;
@@ -16,16 +16,22 @@ const LARGEST_RING: usize = 40;
 /// Passes over all vertices, at most; four or five are used.
 const PASSES: usize = 20;
 
+/// Rounds without any gain before the search ends.
+const IDLE_ROUNDS: usize = 8;
+
 /// Removes what interior vertices it can, of those numbered `boundary_count` and up; returns how many.
 pub(super) fn decimate(mesh: &mut EditableMesh, boundary_count: usize) -> usize {
     let mut removed = 0;
-    for _ in 0..PASSES {
-        removed += remove_all(mesh, boundary_count);
-        let saved = patch::resolve(mesh, boundary_count);
+    let mut resolver = Resolver::new(boundary_count);
+    let mut idle = 0;
+    while idle < IDLE_ROUNDS {
+        let saved = remove_all(mesh, boundary_count) + resolver.resolve(mesh);
         removed += saved;
-        if saved == 0 {
+        idle = if saved > 0 { 0 } else { idle + 1 };
+        let Some(saved) = resolver.shake(mesh) else {
             break;
-        }
+        };
+        removed += saved;
     }
     removed
 }

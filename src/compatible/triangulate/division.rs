@@ -19,9 +19,13 @@ use crate::mesh::geometry;
 pub(super) enum Effort {
     /// Several divisions, each carried through.
     Thorough,
-    /// The first division only, and no path or overlay.
-    Quick,
+    /// One division, another one for every number, and no path.
+    Quick(usize),
 }
+
+/// Larger pieces are divided along one good diagonal after another; in smaller ones all sets of diagonals compete, by
+/// dynamic programming that is cubic in their vertices.
+const LARGEST_PIECE: usize = 256;
 
 /// Divisions of a stuck piece that are carried through to the end.
 const HUBS_TRIED: usize = 4;
@@ -87,6 +91,18 @@ impl Division {
             }
             let sights = self.look(&piece)?;
             let common = common_pairs(&sights);
+            if piece.len() > LARGEST_PIECE
+                && let Some((i, j)) = line_of_sight::balanced_diagonal(
+                    piece.len(),
+                    &common,
+                    |i, j| relative_length(&sights, i, j),
+                    |i, j| is_clear(&sights, i, j),
+                )
+            {
+                pieces.push(chain(&piece, i, j));
+                pieces.push(chain(&piece, j, i));
+                continue;
+            }
             let quality = |triangle: [usize; 3]| {
                 sights
                     .iter()
@@ -102,7 +118,7 @@ impl Division {
             if self.vertex_count() >= self.most_vertices {
                 return Err(self.too_narrow(&piece));
             }
-            let diagonals = line_of_sight::largest_partition(piece.len(), &clear_pairs(&sights, common));
+            let diagonals = clear_partition(&sights, common);
             if diagonals.is_empty() {
                 self.solve_stuck(&piece, &sights)?;
             } else {
@@ -128,12 +144,12 @@ impl Division {
         let mut best: Option<Solution> = None;
         let (effort, tried) = match self.effort {
             Effort::Thorough => (single_steiner::Search::Wide, HUBS_TRIED),
-            Effort::Quick => (single_steiner::Search::Narrow, 1),
+            Effort::Quick(variant) => (single_steiner::Search::Narrow(variant), 1),
         };
         for hub in single_steiner::hubs(sights, effort, tried) {
             let outer = self.effort;
             if tried > 1 {
-                self.effort = Effort::Quick;
+                self.effort = Effort::Quick(0);
             }
             if self.solve_over_hub(piece, &hub).is_ok() {
                 self.most_vertices = self.vertex_count() - 1;
@@ -187,6 +203,10 @@ impl Division {
     }
 
     fn solve_by_overlay(&mut self, piece: &[usize], sights: &[Sight]) -> Result<(), TriangulateError> {
+        // An overlay hardly ever has fewer points than its polygon.
+        if self.most_vertices - self.vertex_count() < piece.len() {
+            return Err(self.too_narrow(piece));
+        }
         let overlay = chord_overlay::overlay(sights).ok_or_else(|| self.too_narrow(piece))?;
         let count = overlay.steiner_count();
         if self.vertex_count() + count > self.most_vertices {
@@ -298,25 +318,54 @@ fn common_pairs(sights: &[Sight]) -> Relation {
 /// side, whose vertices are collinear up to rounding, may have line of sight; the face it cuts off has no area.
 const CLEAR: f64 = 1e-9;
 
-/// The pairs that stay clear of all other vertices, polygon edges included.
-fn clear_pairs(sights: &[Sight], mut common: Relation) -> Relation {
+/// Partitions are chosen this often, each time without the diagonals that turned out not to be clear, before all
+/// diagonals are examined.
+const PARTITION_ATTEMPTS: usize = 4;
+
+/// The clear diagonals, without crossings, that leave the least to Steiner points.
+fn clear_partition(sights: &[Sight], mut common: Relation) -> Vec<(usize, usize)> {
     let count = sights[0].points.len();
+    let cost = |i: usize, j: usize| relative_length(sights, i, j);
+    for _ in 0..PARTITION_ATTEMPTS {
+        let diagonals = line_of_sight::cheapest_partition(count, &common, cost);
+        let unclear: Vec<_> = diagonals
+            .iter()
+            .copied()
+            .filter(|&(i, j)| !is_clear(sights, i, j))
+            .collect();
+        if unclear.is_empty() {
+            return diagonals;
+        }
+        for (i, j) in unclear {
+            common.clear(i, j);
+        }
+    }
     for i in 0..count {
         for j in i + 2..count {
-            let is_clear = |points: &[Point]| {
-                (0..count).filter(|&k| k != i && k != j).all(|k| {
-                    let distance = point::nearest_on_segment(points[k], points[i], points[j]).1;
-                    distance > CLEAR * (points[j] - points[i]).norm()
-                        || points[k] == points[i]
-                        || points[k] == points[j]
-                })
-            };
-            if (i, j) != (0, count - 1) && common.get(i, j) && !sights.iter().all(|sight| is_clear(&sight.points)) {
+            if (i, j) != (0, count - 1) && common.get(i, j) && !is_clear(sights, i, j) {
                 common.clear(i, j);
             }
         }
     }
-    common
+    line_of_sight::cheapest_partition(count, &common, cost)
+}
+
+/// Whether the diagonal stays clear of all other vertices in every pose.
+fn is_clear(sights: &[Sight], i: usize, j: usize) -> bool {
+    sights.iter().all(|sight| {
+        let points = &sight.points;
+        let (from, to) = (points[i], points[j]);
+        let least = CLEAR * (to - from).norm();
+        points
+            .iter()
+            .all(|&p| p == from || p == to || point::nearest_on_segment(p, from, to).1 > least)
+    })
+}
+
+/// The length of a diagonal as a fraction of the piece's size, in the pose where that is most.
+fn relative_length(sights: &[Sight], i: usize, j: usize) -> f64 {
+    let relative = |sight: &Sight| (sight.points[j] - sight.points[i]).norm() / sight.diagonal;
+    sights.iter().map(relative).fold(0.0, f64::max)
 }
 
 /// The vertices of a cyclic list from position `from` to position `to`, both included.

@@ -65,8 +65,8 @@ pub(super) fn star(sights: &[Sight]) -> Option<Hub> {
 pub(super) enum Search {
     /// [`STARTING_PAIRS`].
     Wide,
-    /// [`FEW_STARTING_PAIRS`].
-    Narrow,
+    /// [`FEW_STARTING_PAIRS`], other ones for every number as long as there are others.
+    Narrow(usize),
 }
 
 /// Up to `most` hubs that divide the polygon into smaller parts, those that the most vertices see in all poses first.
@@ -80,23 +80,26 @@ pub(super) fn hubs(sights: &[Sight], search: Search, most: usize) -> Vec<Hub> {
     let stride = count.div_ceil(CANDIDATES);
     for i in (0..count).step_by(stride) {
         for j in (i + 2.max(stride)..count).step_by(stride) {
-            let clearance = rooms
-                .iter()
-                .map(|room| room.roomiest(&[i, j]).map_or(0.0, |(_, clearance)| clearance))
-                .fold(f64::INFINITY, f64::min);
-            if clearance > SMALLEST_CLEARANCE {
-                starts.push((clearance, i, j));
-            }
+            let clearance = rooms.iter().try_fold(f64::INFINITY, |least, room| {
+                let (_, clearance) = room.roomiest(&[i, j])?;
+                (clearance > SMALLEST_CLEARANCE).then_some(clearance.min(least))
+            });
+            starts.extend(clearance.map(|clearance| (clearance, i, j)));
         }
     }
     starts.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-    let pairs = match search {
-        Search::Wide => STARTING_PAIRS / (stride * stride),
-        Search::Narrow => FEW_STARTING_PAIRS,
+    let (skipped, taken) = match search {
+        Search::Wide => (0, STARTING_PAIRS / (stride * stride)),
+        Search::Narrow(variant) => (
+            variant * FEW_STARTING_PAIRS % starts.len().max(1),
+            FEW_STARTING_PAIRS.min(starts.len()),
+        ),
     };
     let mut grown: Vec<(Vec<usize>, f64)> = starts
         .iter()
-        .take(pairs)
+        .cycle()
+        .skip(skipped)
+        .take(taken.min(starts.len()))
         .filter_map(|&(_, i, j)| grown_hub(&rooms, i, j, count))
         .collect();
     grown.sort_by(|a, b| b.0.len().cmp(&a.0.len()).then(b.1.total_cmp(&a.1)).then(a.0.cmp(&b.0)));
@@ -164,7 +167,6 @@ struct Rooms<'a> {
     sight: &'a Sight,
     /// For each triangle, the view of each vertex into it.
     views: Vec<Vec<Option<View>>>,
-    diagonal: f64,
 }
 
 impl<'a> Rooms<'a> {
@@ -176,11 +178,7 @@ impl<'a> Rooms<'a> {
                 views[view.triangle][vertex] = Some(view);
             }
         }
-        Self {
-            sight,
-            views,
-            diagonal: point::diagonal(&sight.points),
-        }
+        Self { sight, views }
     }
 
     /// The part of triangle `t` that all of `vertices` see.
@@ -202,7 +200,7 @@ impl<'a> Rooms<'a> {
 
     fn clearance_in(&self, t: usize, vertices: &[usize]) -> Option<f64> {
         let (_, clearance) = self.region(t, vertices)?.centre()?;
-        Some(clearance / self.diagonal)
+        Some(clearance / self.sight.diagonal)
     }
 
     /// The triangle in which the common region of `vertices` is roomiest, and its relative clearance.

@@ -7,7 +7,7 @@
 //!
 //! Two vertices see one another if the open segment between them is inside the polygon and touches no vertex.
 
-use crate::math::{Point, predicate};
+use crate::math::{Point, point, predicate};
 
 /// A symmetric relation on m vertices.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,6 +57,8 @@ impl Relation {
 pub(super) struct Sight {
     pub(super) points: Vec<Point>,
     pub(super) triangles: Vec<[usize; 3]>,
+    /// Of the box around the points.
+    pub(super) diagonal: f64,
     /// For triangle t and corner k, the triangle across the edge from corner k to corner k + 1.
     neighbours: Vec<[Option<usize>; 3]>,
 }
@@ -82,6 +84,7 @@ impl Sight {
             .map(|&triangle| crate::mesh::directed_edges(triangle).map(|(a, b)| owner.get(&(b, a)).copied()))
             .collect();
         Self {
+            diagonal: point::diagonal(&points),
             points,
             triangles,
             neighbours,
