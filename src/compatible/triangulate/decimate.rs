@@ -1,7 +1,10 @@
-//! Takes Steiner points out of a compatible triangulation where the hole they leave can be closed without them.
+//! Takes Steiner points out of a compatible triangulation.
 //!
-//! The triangles around an interior vertex form a polygon in every pose. If that ring can be triangulated with common
-//! diagonals, the vertex goes; likewise for the two ends of an edge together. Passes are repeated until none helps.
+//! 1. The triangles around an interior vertex form a polygon in every pose. If that ring can be triangulated with common
+//!    diagonals, the vertex goes; likewise for the two ends of an edge together. Passes are repeated until none helps.
+//! 2. Larger patches are solved anew with fewer points ([`super::patch`]), plain ones and then widened ones.
+//! 3. Patches are solved differently with as many points, and all is repeated, until a few rounds have gained nothing or
+//!    the work is used up.
 
 use super::ear_clipping::triangulate_polygon;
 use super::line_of_sight;

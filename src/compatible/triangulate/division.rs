@@ -1,8 +1,13 @@
 //! The divide and conquer itself: a piece is triangulated, or divided into smaller ones, until none is left.
 //!
-//! A *stuck* piece is one without any common diagonal. It is divided over a hub or a path in a few ways, each carried
-//! through to the end; the one with the fewest Steiner points is kept. Where all fail, because the parts become too narrow
-//! for double precision, or where there is neither hub nor path, the overlay takes over, for this piece alone.
+//! 1. A piece of more than [`LARGEST_PIECE`] vertices is divided along a short balanced common diagonal.
+//! 2. Others are triangulated by common diagonals, or divided by those that leave the least to Steiner points.
+//! 3. A *stuck* piece is one without any common diagonal. If all vertices see one point, that is its hub. Otherwise it is
+//!    divided over a hub in a few ways, each carried through to the end, and the one with the fewest Steiner points is
+//!    kept. Where all fail, because the parts become too narrow for double precision, or where there is no hub, it is
+//!    divided over a path, or else the overlay takes over: for the piece that is stuck, not for the one it came from.
+//!
+//! Cost: O(m^2) N for the visibility of m vertices in N poses, twice that in all while large pieces are halved.
 
 use super::chord_overlay;
 use super::ear_clipping::triangulate_polygon;

@@ -1,9 +1,14 @@
 //! Stage I: diagonals with line of sight in all poses (NWM 3.1), chosen well.
 //!
-//! The paper takes any common diagonal it finds. Here interval dynamic programming over the relation of common
-//! diagonals finds, if there is one, the complete triangulation whose worst angle over all poses is largest, and
-//! otherwise a largest set of common diagonals that do not cross, so that what is left for Steiner points is as little
-//! as it can be. Cost O(m d^2) for m vertices with d common diagonals each, O(m^3) at worst.
+//! The paper takes any common diagonal it finds. Here interval dynamic programming over the relation of common diagonals
+//! finds, if there is one, the complete triangulation whose worst angle over all poses is largest
+//! ([`best_triangulation`]), and otherwise the set of common diagonals whose faces will need the fewest Steiner points, as
+//! far as that can be told from their sides ([`cheapest_partition`]). It is not the largest set: a pentagon needs one
+//! point, two quadrilaterals two. Cost O(m d^2) for m vertices with d common diagonals each, O(m^3) at worst, and so for
+//! pieces of bounded size only.
+//!
+//! Larger pieces are divided along one diagonal after another ([`balanced_diagonal`]), each of which is proven to take
+//! part in a complete triangulation if there is one: O(m^2) to choose, and m^3 / 64 operations on words to prove.
 
 use super::visibility::Relation;
 
@@ -327,8 +332,117 @@ mod tests {
         assert_eq!(found, vec![vec![0, 1, 2], vec![0, 2, 6], vec![2, 3, 4, 5, 6]]);
     }
 
+    fn is_edge(count: usize, (i, j): (usize, usize)) -> bool {
+        j == i + 1 || (i, j) == (0, count - 1)
+    }
+
+    fn diagonals(count: usize) -> Vec<(usize, usize)> {
+        (0..count)
+            .flat_map(|i| (i + 1..count).map(move |j| (i, j)))
+            .filter(|&chord| !is_edge(count, chord))
+            .collect()
+    }
+
+    /// The relation that has the polygon's edges and those diagonals whose bit is set.
+    fn relation(count: usize, bits: &[bool]) -> Relation {
+        let mut relation = Relation::full(count);
+        for ((i, j), _) in diagonals(count).into_iter().zip(bits).filter(|(_, bit)| !**bit) {
+            relation.clear(i, j);
+        }
+        relation
+    }
+
+    /// Whether the vertices, in order, are triangulated by common diagonals among them.
+    fn is_triangulable(common: &Relation, vertices: &[usize]) -> bool {
+        let mut part = Relation::full(vertices.len());
+        for (i, j) in diagonals(vertices.len()) {
+            if !common.get(vertices[i], vertices[j]) {
+                part.clear(i, j);
+            }
+        }
+        best_triangulation(vertices.len(), &part, |_| 1.0).is_some()
+    }
+
+    fn price(count: usize, chosen: &[(usize, usize)]) -> f64 {
+        let cost = |sides: usize| {
+            let most = FACE_COST.len() - 1;
+            FACE_COST[sides.min(most)] + SIDE_COST * sides.saturating_sub(most) as f64
+        };
+        faces(count, chosen).iter().map(|face| cost(face.len() - 1)).sum()
+    }
+
+    /// The least price over all sets of common diagonals without crossings.
+    fn least_price(count: usize, left: &[(usize, usize)], chosen: &mut Vec<(usize, usize)>) -> f64 {
+        let Some((&(c, d), rest)) = left.split_first() else {
+            return price(count, chosen);
+        };
+        let without = least_price(count, rest, chosen);
+        let crosses = |&(a, b): &(usize, usize)| (a < c && c < b && b < d) || (c < a && a < d && d < b);
+        if chosen.iter().any(crosses) {
+            return without;
+        }
+        chosen.push((c, d));
+        let with = least_price(count, rest, chosen);
+        chosen.pop();
+        with.min(without)
+    }
+
+    #[test]
+    fn one_pentagon_is_cheaper_than_two_quadrilaterals() {
+        // Of a heptagon, either (0, 4) alone or (0, 3) with (3, 6): the latter leaves two quadrilaterals.
+        let common = relation(
+            7,
+            &diagonals(7)
+                .iter()
+                .map(|d| [(0, 4), (0, 2), (3, 6)].contains(d))
+                .collect::<Vec<_>>(),
+        );
+        let chosen = cheapest_partition(7, &common, |_, _| 1.0);
+        assert!(price(7, &chosen) <= 2.0, "{chosen:?}");
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn no_partition_is_cheaper_than_the_cheapest(
+            (count, bits) in (4_usize..9).prop_flat_map(|n| (Just(n), prop::collection::vec(prop::bool::weighted(0.3), 27))),
+        ) {
+            let common = relation(count, &bits);
+            let chosen = cheapest_partition(count, &common, |_, _| 0.0);
+            prop_assert!(chosen.iter().all(|&(i, j)| common.get(i, j) && !is_edge(count, (i, j))));
+            let all: Vec<_> = diagonals(count).into_iter().filter(|&(i, j)| common.get(i, j)).collect();
+            let least = least_price(count, &all, &mut Vec::new());
+            prop_assert!((price(count, &chosen) - least).abs() < 1e-9, "{chosen:?} costs more than {least}");
+        }
+
+        #[test]
+        fn faces_beyond_the_table_cost_by_their_sides(count in 10_usize..40, chord in (0_usize..40, 2_usize..20)) {
+            // One diagonal at most: the price must be that of the whole, or of the two faces.
+            let (i, j) = (chord.0 % (count / 2), (chord.0 % (count / 2) + chord.1).min(count - 2));
+            prop_assume!(j > i + 1);
+            let bits: Vec<bool> = diagonals(count).iter().map(|&d| d == (i, j)).collect();
+            let chosen = cheapest_partition(count, &relation(count, &bits), |_, _| 0.0);
+            prop_assert!(price(count, &chosen) <= price(count, &[]).min(price(count, &[(i, j)])) + 1e-9);
+        }
+
+        #[test]
+        fn completable_diagonals_are_those_of_complete_triangulations(
+            (count, bits) in (4_usize..12).prop_flat_map(|n| (Just(n), prop::collection::vec(prop::bool::weighted(0.6), 60))),
+        ) {
+            let common = relation(count, &bits);
+            let completable = Completable::new(count, &common);
+            let whole: Vec<usize> = (0..count).collect();
+            prop_assert_eq!(completable.diagonals.is_some(), is_triangulable(&common, &whole));
+            if completable.diagonals.is_some() {
+                for (i, j) in diagonals(count) {
+                    let inside: Vec<usize> = (i..=j).collect();
+                    let outside: Vec<usize> = (j..count).chain(0..=i).collect();
+                    let both = common.get(i, j) && is_triangulable(&common, &inside) && is_triangulable(&common, &outside);
+                    prop_assert_eq!(completable.allows(i, j), both, "{} {}", i, j);
+                }
+            }
+        }
+
         #[test]
         fn the_cheapest_partition_of_one_polygon_is_a_triangulation(
             radii in prop::collection::vec(0.1..1.0f64, 4..20)

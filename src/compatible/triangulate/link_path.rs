@@ -177,8 +177,9 @@ impl<'a> LinkGraph<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::visibility::tests::sight_of;
+    use super::super::visibility::tests::{scattered, sight_of, untangled};
     use super::*;
+    use proptest::prelude::*;
 
     /// A corridor with right-angled bends: a staircase of unit width.
     fn staircase(steps: usize) -> Vec<Point> {
@@ -212,5 +213,82 @@ mod tests {
         along.extend(&path.interior[0]);
         along.push(points[path.to]);
         assert!(sees(&points, path.from, along[1]) && sees(&points, path.to, along[along.len() - 2]));
+    }
+
+    /// Steiner points between two vertices over a fine grid of points: an upper bound of the true number, close to it.
+    fn over_grid(points: &[Point], from: usize) -> Vec<Option<usize>> {
+        const CELLS: usize = 24;
+        let (low, high) = crate::math::point::bounding_box(points).expect("points");
+        let count = points.len();
+        let ring = crate::outline::Ring::new(points.iter().copied()).expect("a ring");
+        let grid: Vec<Point> = (0..CELLS * CELLS)
+            .map(|k| [(k % CELLS) as f64 + 0.51, (k / CELLS) as f64 + 0.53].map(|x| x / CELLS as f64))
+            .map(|[x, y]| Point::new(low.x + x * (high.x - low.x), low.y + y * (high.y - low.y)))
+            .filter(|&p| ring.contains(p))
+            .collect();
+        let linked =
+            |p: Point, q: Point| (0..count).all(|e| !predicate::touch(points[e], points[(e + 1) % count], p, q));
+        let mut steps: Vec<Option<usize>> = grid.iter().map(|&p| sees(points, from, p).then_some(1)).collect();
+        for step in 1.. {
+            let edge: Vec<usize> = (0..grid.len()).filter(|&k| steps[k] == Some(step)).collect();
+            if edge.is_empty() {
+                break;
+            }
+            for k in 0..grid.len() {
+                if steps[k].is_none() && edge.iter().any(|&e| linked(grid[e], grid[k])) {
+                    steps[k] = Some(step + 1);
+                }
+            }
+        }
+        (0..count)
+            .map(|v| {
+                (0..grid.len())
+                    .filter(|&k| sees(points, v, grid[k]))
+                    .filter_map(|k| steps[k])
+                    .min()
+            })
+            .collect()
+    }
+
+    fn assert_close_to_the_grid(points: &[Point], from: usize) {
+        let sight = sight_of(points.to_vec());
+        let graph = LinkGraph::new(&sight);
+        let search = graph.search(from);
+        for (to, least) in over_grid(points, from)
+            .into_iter()
+            .enumerate()
+            .filter(|&(to, _)| to != from)
+        {
+            let found = search.steiner_to(to);
+            let (Some(found), Some(least)) = (found, least) else {
+                // The grid may miss thin parts; the candidates may not.
+                assert!(found.is_some(), "no path from {from} to {to}");
+                continue;
+            };
+            assert!(
+                found <= least + 1,
+                "{from} to {to}: {found} points, {least} over the grid"
+            );
+        }
+    }
+
+    #[test]
+    fn a_staircase_takes_a_point_at_each_of_its_five_bends() {
+        let points = staircase(3);
+        let sight = sight_of(points.clone());
+        let graph = LinkGraph::new(&sight);
+        assert_eq!(graph.search(0).steiner_to(points.len() / 2), Some(5));
+        assert_close_to_the_grid(&points, 0);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(12))]
+        #[test]
+        fn link_distances_are_close_to_those_over_a_fine_grid(points in scattered(4..12), from in 0_usize..12) {
+            let points = untangled(points);
+            prop_assume!(points.is_some());
+            let points = points.expect("assumed");
+            assert_close_to_the_grid(&points, from % points.len());
+        }
     }
 }

@@ -5,22 +5,24 @@
 //! after Aronov, Seidel, Souvaine, "On compatible triangulations of simple polygons" (1993).
 //!
 //! Holes and interior landmarks are first joined to the outer ring by bridges ([`bridge`]). A piece is a list of corresponding vertices that
-//! bound a simple polygon (weakly simple along bridges) in every pose. Each piece is
-//! 1. triangulated with diagonals that have line of sight in all poses, or divided by as many of them as possible
-//!    ([`line_of_sight`]); what has none left is
+//! bound a simple polygon (weakly simple along bridges) in every pose. Each piece ([`division`]) is
+//! 1. triangulated with diagonals that have line of sight in all poses, or divided by those that leave the least to
+//!    Steiner points ([`line_of_sight`]); what has none left is
 //! 2. divided by a Steiner point that several vertices see in all poses ([`single_steiner`]), or
 //! 3. divided by a path of several Steiner points ([`link_path`]), or, if no such path shrinks it,
 //! 4. triangulated as the overlay of the poses' own triangulations on a convex polygon ([`chord_overlay`]), which
 //!    always exists.
 //!
-//! At the end Steiner points that are not needed are taken out again ([`decimate`]).
+//! At the end Steiner points that are not needed are taken out again ([`decimate`]), and small patches are solved anew
+//! with fewer ([`patch`]).
 //!
 //! Differences from the paper: stage 1 chooses its diagonals by dynamic programming instead of taking the first found;
 //! stage 2 joins its point to all vertices it can see, not to two; a partition has to shrink every part, which the
-//! paper does not ask for and without which it may not end; stage 4 and the decimation are not in the paper.
+//! paper does not ask for and without which it may not end; stage 4, the decimation and the patches are not in the paper.
 //!
-//! Guarantee: every triangle is positive in every pose by an exact predicate. Cost: quadratic in the vertices of a
-//! piece for visibility, cubic within pieces of at most 64 vertices for Steiner points.
+//! Guarantee: every triangle is positive in every pose by an exact predicate. Cost: quadratic in the vertices for
+//! visibility; cubic within pieces of at most 256 vertices for diagonals and for Steiner points; a fixed amount of work for
+//! the patches.
 
 mod bridge;
 mod chord_overlay;

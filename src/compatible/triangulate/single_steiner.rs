@@ -2,7 +2,7 @@
 //!
 //! The paper joins one pair of vertices over one point. Here the point is joined to every vertex that can be made to
 //! see it in all poses: to all of them where each pose has a kernel (always so for four and five vertices), otherwise
-//! to the pair that starts the search and all that can be added. The polygon falls into one part between every two
+//! to the pair that starts the search and all that can be added; several such hubs are offered. The polygon falls into one part between every two
 //! successive spokes; a partition is taken only if every part has fewer vertices than the polygon, so that the
 //! recursion ends.
 //!

@@ -1,5 +1,7 @@
 //! Whole triangulations, proven by the mesh checker.
 
+mod random;
+
 use proptest::prelude::*;
 
 use super::super::CompatibleMesh;
@@ -15,14 +17,14 @@ fn polygon(points: Vec<Point>) -> Outline {
 pub(super) fn prove(mesh: &CompatibleMesh, polygons: &[Outline]) {
     for (positions, polygon) in mesh.positions.iter().zip(polygons) {
         check_embedding(&mesh.topology, positions, &mesh.rings).expect("an embedding");
-        let ring: Vec<Point> = mesh.rings[0].iter().map(|&v| positions[v]).collect();
-        assert_eq!(
-            ring,
-            polygon.outer().points(),
-            "the boundary is the polygon, vertex by vertex"
-        );
+        assert_eq!(mesh.rings.len(), polygon.rings().len());
+        for (ring, given) in mesh.rings.iter().zip(polygon.rings()) {
+            let places: Vec<Point> = ring.iter().map(|&v| positions[v]).collect();
+            assert_eq!(places, given.points(), "the boundary is the polygon, vertex by vertex");
+        }
     }
-    assert_eq!(mesh.topology.euler_characteristic(), 1);
+    let characteristic = i64::try_from(mesh.topology.euler_characteristic()).expect("small");
+    assert_eq!(characteristic, 2 - i64::try_from(mesh.rings.len()).expect("few"));
     let boundary: usize = mesh.rings.iter().map(Vec::len).sum();
     assert_eq!(
         mesh.steiner,

@@ -185,6 +185,38 @@ pub(super) mod tests {
             .collect()
     }
 
+    /// A simple polygon through the points in some order: crossing edges are uncrossed until none are left. `None` for
+    /// points that allow no positive simple polygon by that, as several at one place.
+    pub(in super::super) fn untangled(mut points: Vec<Point>) -> Option<Vec<Point>> {
+        let count = points.len();
+        for _ in 0..40 * count * count {
+            let tangle = (0..count).find_map(|i| {
+                (i + 2..count).filter(|&j| (i, j) != (0, count - 1)).find_map(|j| {
+                    let (a, b, c, d) = (points[i], points[i + 1], points[j], points[(j + 1) % count]);
+                    predicate::touch(a, b, c, d).then_some((i, j))
+                })
+            });
+            let Some((i, j)) = tangle else {
+                let area: f64 = (0..count)
+                    .map(|k| point::cross(points[k], points[(k + 1) % count]))
+                    .sum();
+                if area < 0.0 {
+                    points.reverse();
+                }
+                return (area != 0.0).then_some(points);
+            };
+            points[i + 1..=j].reverse();
+        }
+        None
+    }
+
+    /// Points for [`untangled`].
+    pub(in super::super) fn scattered(
+        count: impl Into<prop::collection::SizeRange>,
+    ) -> impl Strategy<Value = Vec<Point>> {
+        prop::collection::vec((0.0..1.0f64, 0.0..1.0f64).prop_map(|(x, y)| Point::new(x, y)), count)
+    }
+
     /// The definition, in O(m^3): no edge touched but at the ends, and inside near the start.
     fn naive(points: &[Point]) -> Relation {
         let count = points.len();
@@ -230,6 +262,14 @@ pub(super) mod tests {
         #[test]
         fn agrees_with_the_definition(radii in prop::collection::vec(0.1..1.0f64, 4..24)) {
             let points = star(&radii);
+            prop_assert_eq!(sight_of(points.clone()).visible_pairs(), naive(&points));
+        }
+
+        #[test]
+        fn agrees_with_the_definition_on_any_polygon(points in scattered(4..24)) {
+            let points = untangled(points);
+            prop_assume!(points.is_some());
+            let points = points.expect("assumed");
             prop_assert_eq!(sight_of(points.clone()).visible_pairs(), naive(&points));
         }
 
