@@ -73,14 +73,6 @@ pub enum PipelineError {
         /// The pose's name.
         pose: String,
     },
-    /// A landmark inside the shape sees no vertex that it sees in every pose.
-    #[error(
-        "landmark '{landmark}' inside the shape cannot be joined to the outline or to another landmark by a line that is inside every pose; move it, or add a landmark between"
-    )]
-    LandmarkHidden {
-        /// Its name.
-        landmark: String,
-    },
     /// A landmark inside the drawing is not inside its polygon.
     #[error("landmark '{landmark}' is not inside the shape of pose '{pose}'; correct its place")]
     LandmarkOutside {

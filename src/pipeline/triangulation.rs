@@ -1,7 +1,7 @@
 //! From polygons with corresponding vertices to one mesh.
 
 use super::PipelineError;
-use crate::compatible::{CompatibleMesh, RefineOptions, TriangulateError, refine, triangulate};
+use crate::compatible::{CompatibleMesh, Feature, RefineOptions, TriangulateError, refine, triangulate};
 use crate::math::Point;
 use crate::mesh::geometry;
 use crate::outline::Outline;
@@ -59,10 +59,10 @@ pub(super) fn mesh(
         TriangulateError::CountsDiffer { pose, .. } | TriangulateError::TooNarrow { pose, .. } => {
             PipelineError::stage(names, Some(*pose), error)
         }
-        TriangulateError::LandmarkHidden { landmark } => PipelineError::LandmarkHidden {
-            landmark: named(landmark),
-        },
-        TriangulateError::LandmarkOutside { landmark, pose } => PipelineError::LandmarkOutside {
+        TriangulateError::FeatureOutside {
+            feature: Feature::Point(landmark),
+            pose,
+        } => PipelineError::LandmarkOutside {
             landmark: named(landmark),
             pose: names.get(*pose).cloned().unwrap_or_default(),
         },
