@@ -13,6 +13,9 @@
 mod character;
 mod drawings;
 mod error;
+mod inside;
+mod landmark_path;
+mod landmarks;
 mod mapping;
 mod triangulation;
 mod weighting;

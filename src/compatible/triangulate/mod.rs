@@ -41,6 +41,8 @@ mod visibility;
 mod tests;
 #[cfg(test)]
 mod tests_holes;
+#[cfg(test)]
+mod tests_paths;
 
 pub use features::{Feature, FeaturePath, Features, PathEnd};
 
