@@ -24,5 +24,5 @@ pub use character::Character;
 pub use drawings::read_drawings;
 pub use error::PipelineError;
 pub use mapping::{MappingReport, map_drawings};
-pub use triangulation::{Refinement, triangulate_polygons};
+pub use triangulation::{LandmarkLabel, Refinement, triangulate_polygons};
 pub use weighting::{checked_weights, weight_provider};

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::LandmarkLabel;
 use crate::blend::BlendError;
 use crate::input::InputError;
 use crate::scene::SceneError;
@@ -74,38 +75,38 @@ pub enum PipelineError {
         pose: String,
     },
     /// A landmark inside the drawing is not inside its polygon.
-    #[error("landmark '{landmark}' is not inside the shape of pose '{pose}', or leaves it; correct its place")]
+    #[error("landmark {landmark} is not inside the shape of pose '{pose}', or leaves it; correct its place")]
     LandmarkOutside {
-        /// Its name.
-        landmark: String,
+        /// Which.
+        landmark: LandmarkLabel,
         /// The pose's name.
         pose: String,
     },
     /// Two landmarks inside the shape touch or cross.
-    #[error("landmarks '{first}' and '{second}' meet inside pose '{pose}'; draw them apart")]
+    #[error("landmarks {first} and {second} meet inside pose '{pose}'; draw them apart")]
     LandmarksMeet {
-        /// A landmark's name.
-        first: String,
-        /// The other's.
-        second: String,
+        /// A landmark.
+        first: LandmarkLabel,
+        /// The other.
+        second: LandmarkLabel,
         /// The pose's name.
         pose: String,
     },
     /// A line crosses itself.
-    #[error("landmark '{landmark}' crosses itself in pose '{pose}'; draw it without a loop")]
+    #[error("landmark {landmark} crosses itself in pose '{pose}'; draw it without a loop")]
     LandmarkCrossesItself {
-        /// Its name.
-        landmark: String,
+        /// Which.
+        landmark: LandmarkLabel,
         /// The pose's name.
         pose: String,
     },
     /// Something lies on different sides of a line.
     #[error(
-        "pose '{pose}' has a hole or landmark on the other side of landmark '{landmark}' than pose '{other}'; let the same things lie on each side, or end the line inside"
+        "pose '{pose}' has a hole or landmark on the other side of landmark {landmark} than pose '{other}'; let the same things lie on each side, or end the line inside"
     )]
     LandmarkSides {
-        /// The line's name.
-        landmark: String,
+        /// The line.
+        landmark: LandmarkLabel,
         /// A pose's name.
         pose: String,
         /// The other pose's name.

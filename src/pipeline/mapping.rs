@@ -1,7 +1,7 @@
 //! From drawings to the N-way mapping: match, simplify, triangulate, refine.
 
 use super::landmarks::{self, Landmarks};
-use super::triangulation::{self, Labels};
+use super::triangulation::{self, Labels, LandmarkLabel};
 use super::{PipelineError, Refinement};
 use crate::compatible::{
     CompatibleMesh, RefineOptions, SimplifyError, SimplifyOptions, simplify, triangulate_features,
@@ -120,9 +120,13 @@ fn bare_mesh(
     landmarks: &Landmarks,
     anchors: &[Vec<Point>],
 ) -> Result<(CompatibleMesh, Vec<String>), PipelineError> {
+    let label = |name: &String, line: usize| LandmarkLabel {
+        name: name.clone(),
+        line,
+    };
     let labels = Labels {
-        points: landmarks.points.iter().map(|landmark| landmark.name.clone()).collect(),
-        paths: landmarks.paths.iter().map(|path| path.name.clone()).collect(),
+        points: landmarks.points.iter().map(|l| label(&l.name, l.line)).collect(),
+        paths: landmarks.paths.iter().map(|l| label(&l.name, l.line)).collect(),
     };
     let mut refusal = PipelineError::stage(&[], None, "no polygon");
     for share in FINER_LINES {

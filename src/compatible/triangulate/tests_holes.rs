@@ -68,8 +68,8 @@ fn a_landmark_at_the_two_ends_of_a_u_is_reached_over_bends() {
     let (mesh, report) = triangulate(&polygons, std::slice::from_ref(&landmark)).expect("triangulated");
     prove(&mesh, &polygons);
     assert!(report.bridge > 0, "{report:?}");
-    for pose in 0..2 {
-        assert_eq!(mesh.positions[pose][mesh.landmarks[0]], landmark[pose]);
+    for (positions, place) in mesh.positions.iter().zip(&landmark) {
+        assert_eq!(positions[mesh.landmarks[0]], *place);
     }
 }
 
