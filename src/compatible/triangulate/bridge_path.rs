@@ -5,7 +5,8 @@
 //! 2. For the best pairs the paths are drawn ([`FreeSpace::path`]). The fewest points win, in the pose that needs most,
 //!    then the shortest path relative to the pose's size, in the pose where it is longest.
 //! 3. In the poses that need fewer points the longest links get a point at their middle.
-//! 4. Every path is proven with exact predicates to touch nothing but its ends. What fails gives way to the next.
+//! 4. The inner points are moved off the lines that they were put on, so that no three of them are in line by rounding.
+//! 5. Every path is proven with exact predicates to touch nothing but its ends. What fails gives way to the next.
 //!
 //! The number of points is an upper bound: paths over the middles of edges are not the ones with the fewest links.
 //! The decimation takes out what was not needed. Cost O(m^2) a pose.
@@ -67,8 +68,10 @@ pub(super) fn fewest_bends(
         for (bends, _, mut bridge) in drawn {
             let failed = (0..positions.len()).find(|&pose| {
                 let path = whole(&positions[pose], visits, bridge.from, bridge.to, &bridge.interior[pose]);
+                let is_clear = |path: &[Point]| is_clear(&positions[pose], visits, bridge.from, bridge.to, path);
                 let path = lengthened(path, bends);
-                let proven = is_clear(&positions[pose], visits, bridge.from, bridge.to, &path);
+                let proven = is_clear(&path);
+                let path = if proven { nudged(path, is_clear) } else { path };
                 bridge.interior[pose] = path[1..path.len() - 1].to_vec();
                 !proven
             });
@@ -138,6 +141,35 @@ fn lengthened(mut path: Vec<Point>, bends: usize) -> Vec<Point> {
             .max_by(|&a, &b| length(a).total_cmp(&length(b)).then(b.cmp(&a)))
             .unwrap_or(0);
         path.insert(longest + 1, (path[longest] + path[longest + 1]) * 0.5);
+    }
+    path
+}
+
+/// How far a point is moved off its line, in lengths of its shorter link; the first that keeps the path clear.
+const NUDGES: [f64; 3] = [0.12, 0.04, 0.01];
+
+/// Directions that each of these is tried in.
+const DIRECTIONS: usize = 6;
+
+/// The clear path with every inner point moved a little. Middles of links and of triangle edges are in line with others
+/// but for rounding; a triangle of such three points would be needed, and could not be, positive.
+fn nudged(mut path: Vec<Point>, is_clear: impl Fn(&[Point]) -> bool) -> Vec<Point> {
+    // The golden angle: no direction twice.
+    const TURN_RAD: f64 = 2.399_963_229_728_653;
+    for k in 1..path.len() - 1 {
+        let start = path[k];
+        let reach = (path[k - 1] - start).norm().min((path[k + 1] - start).norm());
+        let tries = NUDGES
+            .iter()
+            .flat_map(|nudge| (0..DIRECTIONS).map(move |d| (nudge * reach, d)));
+        for (step, direction) in tries {
+            let angle = TURN_RAD * (k * DIRECTIONS + direction) as f64;
+            path[k] = start + Point::new(angle.cos(), angle.sin()) * step;
+            if is_clear(&path) {
+                break;
+            }
+            path[k] = start;
+        }
     }
     path
 }

@@ -107,6 +107,32 @@ fn joined(polygons: &[Outline], landmarks: &[Vec<Point>]) -> (Vec<usize>, Vec<Ve
     (joined.walk, positions)
 }
 
+/// Bends at the middles of links and edges were in line with vertices but for rounding, and the overlay needed the flat
+/// triangles between.
+#[test]
+fn bends_are_in_line_with_nothing() {
+    let places = [[0.5, 8.0], [4.5, 0.5], [8.5, 8.0]];
+    let polygons: Vec<Outline> = [[0, 1, 2], [2, 0, 1], [1, 2, 0]]
+        .iter()
+        .map(|order| outline(u_shape(), order.iter().map(|&k| hole(places[k])).collect()))
+        .collect();
+    let (walk, positions) = joined(&polygons, &[]);
+    let given: usize = polygons[0].rings().iter().map(Ring::len).sum();
+    for positions in &positions {
+        let bends: Vec<usize> = walk.iter().copied().filter(|&v| v >= given).collect();
+        assert!(!bends.is_empty());
+        for &bend in &bends {
+            for (k, &a) in walk.iter().enumerate() {
+                for &b in walk[..k].iter().filter(|&&b| b != a && a != bend && b != bend) {
+                    let (u, v) = (positions[a] - positions[bend], positions[b] - positions[bend]);
+                    let sine = crate::math::point::cross(u, v) / (u.norm() * v.norm());
+                    assert!(sine.abs() > 1e-6, "{bend} is in line with {a} and {b}");
+                }
+            }
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
     #[test]
