@@ -13,6 +13,9 @@
 mod character;
 mod drawings;
 mod error;
+mod inside;
+mod landmark_path;
+mod landmarks;
 mod mapping;
 mod triangulation;
 mod weighting;
@@ -21,5 +24,5 @@ pub use character::Character;
 pub use drawings::read_drawings;
 pub use error::PipelineError;
 pub use mapping::{MappingReport, map_drawings};
-pub use triangulation::{Refinement, triangulate_polygons};
+pub use triangulation::{LandmarkLabel, Refinement, triangulate_polygons};
 pub use weighting::{checked_weights, weight_provider};

@@ -4,6 +4,17 @@ use super::CompatibleMesh;
 use crate::math::{Point, predicate};
 use crate::mesh::{Topology, TopologyError};
 
+/// What of a mesh has a meaning beyond its triangles, as vertex indices.
+#[derive(Debug, Clone)]
+pub(super) struct Curves {
+    /// The boundary, outer ring first.
+    pub(super) rings: Vec<Vec<usize>>,
+    /// Single vertices.
+    pub(super) landmarks: Vec<usize>,
+    /// Chains of edges.
+    pub(super) paths: Vec<Vec<usize>>,
+}
+
 /// N embeddings of one changing set of triangles.
 #[derive(Debug, Clone)]
 pub(super) struct EditableMesh {
@@ -146,12 +157,7 @@ impl EditableMesh {
     }
 
     /// The mesh with unused vertices dropped and the others renumbered in their order.
-    pub(super) fn finish(
-        self,
-        rings: &[Vec<usize>],
-        landmarks: &[usize],
-        steiner: usize,
-    ) -> Result<CompatibleMesh, TopologyError> {
+    pub(super) fn finish(self, curves: &Curves, steiner: usize) -> Result<CompatibleMesh, TopologyError> {
         let mut renumbered = vec![usize::MAX; self.vertex_count()];
         let mut count = 0;
         for (v, triangles) in self.at_vertex.iter().enumerate() {
@@ -177,16 +183,16 @@ impl EditableMesh {
                     .collect()
             })
             .collect();
-        let rings = rings
-            .iter()
-            .map(|ring| ring.iter().map(|&v| renumbered[v]).collect())
-            .collect();
-        let landmarks = landmarks.iter().map(|&v| renumbered[v]).collect();
+        let chain = |vertices: &Vec<usize>| vertices.iter().map(|&v| renumbered[v]).collect();
+        let rings = curves.rings.iter().map(chain).collect();
+        let paths = curves.paths.iter().map(chain).collect();
+        let landmarks = chain(&curves.landmarks);
         Ok(CompatibleMesh {
             topology: Topology::new(count, triangles)?,
             positions,
             rings,
             landmarks,
+            paths,
             steiner,
         })
     }

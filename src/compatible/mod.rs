@@ -7,7 +7,9 @@ mod triangulate;
 
 pub use refine::{RefineError, RefineOptions, RefineReport, refine};
 pub use simplify::{Simplified, SimplifyError, SimplifyOptions, SimplifyReport, simplify};
-pub use triangulate::{TriangulateError, TriangulateReport, triangulate};
+pub use triangulate::{
+    Feature, FeaturePath, Features, PathEnd, TriangulateError, TriangulateReport, triangulate, triangulate_features,
+};
 
 use crate::math::Point;
 use crate::mesh::Topology;
@@ -23,6 +25,8 @@ pub struct CompatibleMesh {
     pub rings: Vec<Vec<usize>>,
     /// The vertices of interior landmarks, in the order given.
     pub landmarks: Vec<usize>,
+    /// The vertices along each path, in the order given: every two successive ones are joined by an edge.
+    pub paths: Vec<Vec<usize>>,
     /// Interior vertices that the triangulation itself had to add.
     pub steiner: usize,
 }

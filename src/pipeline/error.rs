@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::LandmarkLabel;
 use crate::blend::BlendError;
 use crate::input::InputError;
 use crate::scene::SceneError;
@@ -43,7 +44,7 @@ pub enum PipelineError {
     /// A landmark lies off the outline.
     #[error(
         "landmark '{landmark}' (line {line}): on pose '{pose}' it lies {distance:.1} units from the outline, at most \
-         {largest:.1} are allowed; move ({x:.1}, {y:.1}) onto the outline (landmarks inside the shape are not supported yet)"
+         {largest:.1} are allowed; move ({x:.1}, {y:.1}) onto the outline, or inside the shape in every pose"
     )]
     LandmarkOffOutline {
         /// Its name.
@@ -61,9 +62,9 @@ pub enum PipelineError {
         /// Its place.
         y: f64,
     },
-    /// A landmark inside the shape is not given in every pose.
+    /// A landmark inside the shape is not given in every pose, and there is no room where it should be.
     #[error(
-        "landmark '{landmark}' (line {line}) lies inside the shape but has no place in pose '{pose}'; give it one, or put it on the outline"
+        "landmark '{landmark}' (line {line}) lies inside the shape, but pose '{pose}' has neither a place for it nor room where it should be; give it one"
     )]
     LandmarkMissing {
         /// Its name.
@@ -73,21 +74,43 @@ pub enum PipelineError {
         /// The pose's name.
         pose: String,
     },
-    /// A landmark inside the shape sees no vertex that it sees in every pose.
-    #[error(
-        "landmark '{landmark}' inside the shape cannot be joined to the outline or to another landmark by a line that is inside every pose; move it, or add a landmark between"
-    )]
-    LandmarkHidden {
-        /// Its name.
-        landmark: String,
-    },
     /// A landmark inside the drawing is not inside its polygon.
-    #[error("landmark '{landmark}' is not inside the shape of pose '{pose}'; correct its place")]
+    #[error("landmark {landmark} is not inside the shape of pose '{pose}', or leaves it; correct its place")]
     LandmarkOutside {
-        /// Its name.
-        landmark: String,
+        /// Which.
+        landmark: LandmarkLabel,
         /// The pose's name.
         pose: String,
+    },
+    /// Two landmarks inside the shape touch or cross.
+    #[error("landmarks {first} and {second} meet inside pose '{pose}'; draw them apart")]
+    LandmarksMeet {
+        /// A landmark.
+        first: LandmarkLabel,
+        /// The other.
+        second: LandmarkLabel,
+        /// The pose's name.
+        pose: String,
+    },
+    /// A line crosses itself.
+    #[error("landmark {landmark} crosses itself in pose '{pose}'; draw it without a loop")]
+    LandmarkCrossesItself {
+        /// Which.
+        landmark: LandmarkLabel,
+        /// The pose's name.
+        pose: String,
+    },
+    /// Something lies on different sides of a line.
+    #[error(
+        "pose '{pose}' has a hole or landmark on the other side of landmark {landmark} than pose '{other}'; let the same things lie on each side, or end the line inside"
+    )]
+    LandmarkSides {
+        /// The line.
+        landmark: LandmarkLabel,
+        /// A pose's name.
+        pose: String,
+        /// The other pose's name.
+        other: String,
     },
     /// Landmarks contradict one another.
     #[error(

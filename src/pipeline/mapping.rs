@@ -1,23 +1,21 @@
 //! From drawings to the N-way mapping: match, simplify, triangulate, refine.
 
-use super::drawings::{mirror_axis, reflected};
-use super::triangulation::{self, InteriorLandmark};
+use super::landmarks::{self, Landmarks};
+use super::triangulation::{self, Labels, LandmarkLabel};
 use super::{PipelineError, Refinement};
-use crate::compatible::{RefineOptions, SimplifyError, SimplifyOptions, simplify};
+use crate::compatible::{
+    CompatibleMesh, RefineOptions, SimplifyError, SimplifyOptions, simplify, triangulate_features,
+};
 use crate::input::Drawing;
 use crate::matching::{Correspondence, Landmark, MatchError, MatchOptions, MirrorHints, match_rings};
 use crate::math::Point;
 use crate::outline::{ArcLength, Outline, Ring};
 use crate::pose::{Mapping, Matching, PoseSet};
-use crate::scene::{Facing, Scene};
+use crate::scene::Scene;
 
-/// How far a landmark may lie from the outline it is snapped to, as a fraction of the pose's diagonal: a few times the
-/// width of an ink line.
-const LANDMARK_REACH: f64 = 0.03;
-
-/// A landmark that in every pose lies inside the shape by more than this, as a fraction of the diagonal, is an interior
-/// one: about the width of an ink line.
-const INTERIOR_DEPTH: f64 = 0.01;
+/// Lines inside are simplified to the mesh's tolerance; where they then touch the outline or one another, to these shares
+/// of it.
+const FINER_LINES: [f64; 4] = [1.0, 0.25, 0.0625, 0.0];
 
 /// What an artist should know about a mapping.
 #[derive(Debug, Clone, Default)]
@@ -44,13 +42,14 @@ pub fn map_drawings(scene: &Scene, drawings: &[Drawing]) -> Result<(Mapping, Map
     }
     let mut outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
     check_hole_counts(&names, &outlines)?;
-    let (landmarks, interior) = landmarks(scene, drawings)?;
+    let landmarks = landmarks::sorted(scene, drawings)?;
+    let on_outline = &landmarks.on_outline;
     let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
     let mut options = MatchOptions {
         reference: scene.reference,
         ..MatchOptions::default()
     };
-    let matched = match_rings(&outer, &landmarks, &options).map_err(|error| match_refusal(&names, error))?;
+    let matched = match_rings(&outer, on_outline, &options).map_err(|error| match_refusal(&names, error))?;
     for (pose, _) in matched
         .report
         .poses
@@ -73,7 +72,7 @@ pub fn map_drawings(scene: &Scene, drawings: &[Drawing]) -> Result<(Mapping, Map
         correspondences.push(matched.correspondence);
     }
 
-    let pinned: Vec<Vec<f64>> = landmarks
+    let pinned: Vec<Vec<f64>> = on_outline
         .iter()
         .filter_map(|landmark| everywhere(landmark, &correspondences[0]))
         .collect();
@@ -89,7 +88,14 @@ pub fn map_drawings(scene: &Scene, drawings: &[Drawing]) -> Result<(Mapping, Map
     })?;
     report.boundary_vertices = simplified.report.vertices;
     let refinement = Refinement::Refine(RefineOptions::default().with_edge_length(scene.mesh.edge_length));
-    let (mesh, smallest_angle_deg) = triangulation::mesh(&names, &simplified.polygons, &interior, &refinement)?;
+    let measured: Vec<ArcLength> = outer.iter().map(ArcLength::new).collect();
+    let anchors: Vec<Vec<Point>> = pinned
+        .iter()
+        .map(|at| at.iter().zip(&measured).map(|(&t, outline)| outline.at(t)).collect())
+        .collect();
+    let (mesh, notes) = bare_mesh(scene, drawings, &simplified.polygons, &landmarks, &anchors)?;
+    report.notes.extend(notes);
+    let (mesh, smallest_angle_deg) = triangulation::refined(&names, mesh, &refinement)?;
     report.smallest_angle_deg = smallest_angle_deg;
     let poses = PoseSet::new(mesh.topology, names.iter().cloned().zip(mesh.positions).collect())
         .map_err(|error| PipelineError::stage(&names, None, error))?;
@@ -104,6 +110,39 @@ pub fn map_drawings(scene: &Scene, drawings: &[Drawing]) -> Result<(Mapping, Map
         },
     };
     Ok((mapping, report))
+}
+
+/// The triangulation of the polygons with everything inside them, and what was placed.
+fn bare_mesh(
+    scene: &Scene,
+    drawings: &[Drawing],
+    polygons: &[Outline],
+    landmarks: &Landmarks,
+    anchors: &[Vec<Point>],
+) -> Result<(CompatibleMesh, Vec<String>), PipelineError> {
+    let label = |name: &String, line: usize| LandmarkLabel {
+        name: name.clone(),
+        line,
+    };
+    let labels = Labels {
+        points: landmarks.points.iter().map(|l| label(&l.name, l.line)).collect(),
+        paths: landmarks.paths.iter().map(|l| label(&l.name, l.line)).collect(),
+    };
+    let mut refusal = PipelineError::stage(&[], None, "no polygon");
+    for share in FINER_LINES {
+        let (features, notes) = landmarks.features(scene, drawings, polygons, anchors, share * scene.mesh.simplify)?;
+        match triangulate_features(polygons, &features) {
+            Ok((mesh, _)) => return Ok((mesh, notes)),
+            Err(error) => {
+                let may_be_coarse = triangulation::concerns_a_path(&error);
+                refusal = triangulation::refusal(&scene.names(), &labels, error);
+                if !may_be_coarse {
+                    break;
+                }
+            }
+        }
+    }
+    Err(refusal)
 }
 
 /// The matching's refusal with the poses' names.
@@ -138,88 +177,6 @@ fn check_hole_counts(names: &[String], outlines: &[Outline]) -> Result<(), Pipel
             expected,
         }),
     }
-}
-
-/// The scene's landmarks: those on the outlines as parameters of the outer rings, and those inside.
-fn landmarks(scene: &Scene, drawings: &[Drawing]) -> Result<(Vec<Landmark>, Vec<InteriorLandmark>), PipelineError> {
-    let measured: Vec<ArcLength> = drawings.iter().map(|d| ArcLength::new(d.outline.outer())).collect();
-    let (mut on_outline, mut interior) = (Vec::new(), Vec::new());
-    for landmark in &scene.landmarks {
-        if landmark.at.iter().all(Option::is_none) {
-            return Err(PipelineError::LandmarkNowhere {
-                landmark: landmark.name.clone(),
-                line: landmark.line,
-            });
-        }
-        let mut found = Vec::with_capacity(drawings.len());
-        for (pose, place) in landmark.at.iter().enumerate() {
-            found.push(place.map(|place| {
-                let drawing = &drawings[pose];
-                let place = match scene.poses[pose].facing {
-                    Facing::AsDrawn => place,
-                    Facing::Mirrored => reflected(place, mirror_axis(&drawing.outline)),
-                };
-                let (parameter, distance) = measured[pose].nearest(place);
-                Found {
-                    place,
-                    parameter,
-                    distance,
-                    inside: drawing.outline.contains(place),
-                    size: drawing.outline.diagonal(),
-                }
-            }));
-        }
-        let is_interior = found
-            .iter()
-            .flatten()
-            .all(|f| f.inside && f.distance > INTERIOR_DEPTH * f.size);
-        if is_interior {
-            let at = found.iter().enumerate().map(|(pose, found)| match found {
-                Some(found) => Ok(found.place),
-                None => Err(PipelineError::LandmarkMissing {
-                    landmark: landmark.name.clone(),
-                    line: landmark.line,
-                    pose: scene.poses[pose].name.clone(),
-                }),
-            });
-            interior.push(InteriorLandmark {
-                name: landmark.name.clone(),
-                at: at.collect::<Result<_, _>>()?,
-            });
-            continue;
-        }
-        for (pose, found) in found.iter().enumerate() {
-            if let Some(found) = found.as_ref().filter(|f| f.distance > LANDMARK_REACH * f.size) {
-                return Err(PipelineError::LandmarkOffOutline {
-                    landmark: landmark.name.clone(),
-                    line: landmark.line,
-                    pose: scene.poses[pose].name.clone(),
-                    distance: found.distance,
-                    largest: LANDMARK_REACH * found.size,
-                    x: found.place.x,
-                    y: found.place.y,
-                });
-            }
-        }
-        let at = found.iter().map(|found| found.as_ref().map(|f| f.parameter)).collect();
-        on_outline.push(Landmark {
-            name: landmark.name.clone(),
-            at,
-        });
-    }
-    Ok((on_outline, interior))
-}
-
-/// A landmark's place on one pose.
-struct Found {
-    place: Point,
-    /// Of the nearest point of the outline.
-    parameter: f64,
-    /// To that point, in source units.
-    distance: f64,
-    inside: bool,
-    /// The pose's diagonal.
-    size: f64,
 }
 
 /// A landmark on every pose: where a pose lacks it, where the matching puts it.

@@ -1,10 +1,8 @@
 //! From polygons with corresponding vertices to one mesh.
 
 use super::PipelineError;
-use crate::compatible::{CompatibleMesh, RefineOptions, TriangulateError, refine, triangulate};
-use crate::math::Point;
+use crate::compatible::{CompatibleMesh, Feature, RefineOptions, TriangulateError, refine, triangulate};
 use crate::mesh::geometry;
-use crate::outline::Outline;
 use crate::pose::{Mapping, Matching, Polygons, PoseSet};
 
 /// Whether a triangulation is refined.
@@ -16,11 +14,26 @@ pub enum Refinement {
     Refine(RefineOptions),
 }
 
-/// A landmark inside the shape.
-pub(super) struct InteriorLandmark {
-    pub(super) name: String,
-    /// Its place in every pose.
-    pub(super) at: Vec<Point>,
+/// What lies inside, in the order of [`crate::compatible::Features`].
+#[derive(Debug, Default)]
+pub(super) struct Labels {
+    pub(super) points: Vec<LandmarkLabel>,
+    pub(super) paths: Vec<LandmarkLabel>,
+}
+
+/// How a message calls a landmark.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LandmarkLabel {
+    /// Its name.
+    pub name: String,
+    /// The line of the scene file.
+    pub line: usize,
+}
+
+impl std::fmt::Display for LandmarkLabel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "'{}' (line {})", self.name, self.line)
+    }
 }
 
 /// A mapping of polygons whose vertices already correspond: the mesh covers exactly these polygons.
@@ -28,7 +41,9 @@ pub(super) struct InteriorLandmark {
 /// # Errors
 /// [`PipelineError`] if the triangulation or the refinement refuses.
 pub fn triangulate_polygons(polygons: &Polygons, refinement: &Refinement) -> Result<Mapping, PipelineError> {
-    let (mesh, _) = mesh(&polygons.names, &polygons.outlines, &[], refinement)?;
+    let (mesh, _) =
+        triangulate(&polygons.outlines, &[]).map_err(|error| refusal(&polygons.names, &Labels::default(), error))?;
+    let (mesh, _) = refined(&polygons.names, mesh, refinement)?;
     let poses = PoseSet::new(
         mesh.topology,
         polygons.names.iter().cloned().zip(mesh.positions).collect(),
@@ -46,28 +61,62 @@ pub fn triangulate_polygons(polygons: &Polygons, refinement: &Refinement) -> Res
     })
 }
 
-/// The mesh, and its smallest angle in any pose in degrees.
-pub(super) fn mesh(
-    names: &[String],
-    polygons: &[Outline],
-    landmarks: &[InteriorLandmark],
-    refinement: &Refinement,
-) -> Result<(CompatibleMesh, f64), PipelineError> {
-    let places: Vec<Vec<Point>> = landmarks.iter().map(|landmark| landmark.at.clone()).collect();
-    let named = |landmark: &usize| landmarks.get(*landmark).map_or_else(String::new, |l| l.name.clone());
-    let (mesh, _) = triangulate(polygons, &places).map_err(|error| match &error {
-        TriangulateError::CountsDiffer { pose, .. } | TriangulateError::TooNarrow { pose, .. } => {
-            PipelineError::stage(names, Some(*pose), error)
+/// Whether a line's coarser or finer form may make the difference.
+pub(super) fn concerns_a_path(error: &TriangulateError) -> bool {
+    match error {
+        TriangulateError::FeatureOutside { feature, .. } => matches!(feature, Feature::Path(_)),
+        TriangulateError::FeaturesMeet { first, second, .. } => {
+            matches!(first, Feature::Path(_)) || matches!(second, Feature::Path(_))
         }
-        TriangulateError::LandmarkHidden { landmark } => PipelineError::LandmarkHidden {
-            landmark: named(landmark),
+        TriangulateError::PathSides { .. } => true,
+        _ => false,
+    }
+}
+
+/// The triangulation's refusal with the names of poses and landmarks.
+pub(super) fn refusal(names: &[String], labels: &Labels, error: TriangulateError) -> PipelineError {
+    let pose_name = |pose: usize| names.get(pose).cloned().unwrap_or_default();
+    let label = |feature: Feature| {
+        let label = match feature {
+            Feature::Point(k) => labels.points.get(k),
+            Feature::Path(k) => labels.paths.get(k),
+        };
+        label.cloned().unwrap_or_default()
+    };
+    match error {
+        TriangulateError::CountsDiffer { pose, .. } | TriangulateError::TooNarrow { pose, .. } => {
+            PipelineError::stage(names, Some(pose), error)
+        }
+        TriangulateError::FeatureOutside { feature, pose } => PipelineError::LandmarkOutside {
+            landmark: label(feature),
+            pose: pose_name(pose),
         },
-        TriangulateError::LandmarkOutside { landmark, pose } => PipelineError::LandmarkOutside {
-            landmark: named(landmark),
-            pose: names.get(*pose).cloned().unwrap_or_default(),
+        TriangulateError::FeaturesMeet { first, second, pose } if first == second => {
+            PipelineError::LandmarkCrossesItself {
+                landmark: label(first),
+                pose: pose_name(pose),
+            }
+        }
+        TriangulateError::FeaturesMeet { first, second, pose } => PipelineError::LandmarksMeet {
+            first: label(first),
+            second: label(second),
+            pose: pose_name(pose),
+        },
+        TriangulateError::PathSides { path, pose } => PipelineError::LandmarkSides {
+            landmark: label(Feature::Path(path)),
+            pose: pose_name(pose),
+            other: pose_name(0),
         },
         _ => PipelineError::stage(names, None, error),
-    })?;
+    }
+}
+
+/// The mesh as asked for, and its smallest angle in any pose in degrees.
+pub(super) fn refined(
+    names: &[String],
+    mesh: CompatibleMesh,
+    refinement: &Refinement,
+) -> Result<(CompatibleMesh, f64), PipelineError> {
     match refinement {
         Refinement::Bare => {
             let smallest = mesh

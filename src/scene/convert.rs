@@ -100,7 +100,7 @@ impl Reader<'_> {
         }
         let poses = self.poses(&written.pose)?;
         let names: Vec<&str> = poses.iter().map(|p| p.name.as_str()).collect();
-        let landmarks = self.landmarks(&written.landmark, &names)?;
+        let (landmarks, paths) = self.landmarks(&written.landmark, &names)?;
         let reference = match &written.reference {
             Some(name) => Some(self.pose_index(name, "`reference`", &names)?),
             None => None,
@@ -156,6 +156,7 @@ impl Reader<'_> {
             poses,
             pseudo_poses,
             landmarks,
+            paths,
         })
     }
 

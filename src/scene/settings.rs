@@ -31,6 +31,8 @@ pub struct Scene {
     pub pseudo_poses: Vec<PseudoPose>,
     /// Points that correspond.
     pub landmarks: Vec<SceneLandmark>,
+    /// Lines that correspond, named by `path = true` landmarks.
+    pub paths: Vec<ScenePath>,
     /// What is played.
     pub animation: Animation,
 }
@@ -193,6 +195,18 @@ pub struct SceneLandmark {
     pub line: usize,
     /// Where it lies on each pose, in source pixels or SVG user units; `None` where the pose lacks it.
     pub at: Vec<Option<Point>>,
+}
+
+/// A line that the artist names on several poses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScenePath {
+    /// Its name.
+    pub name: String,
+    /// The line of the scene file.
+    pub line: usize,
+    /// Its points on each pose from start to end, in source pixels or SVG user units; at least two, no two successive
+    /// ones equal. `None` where the pose lacks it.
+    pub at: Vec<Option<Vec<Point>>>,
 }
 
 /// What is behind the character.

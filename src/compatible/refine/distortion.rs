@@ -218,6 +218,7 @@ fn derivatives(
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::editable::Curves;
     use super::*;
 
     fn star_of_four() -> (Vec<Point>, Vec<(usize, usize)>, Vec<Rest>) {
@@ -267,7 +268,12 @@ mod tests {
         places.push(Point::new(0.5, 0.3));
         let triangles: Vec<[usize; 3]> = (0..6).map(|k| [6, k, (k + 1) % 6]).collect();
         let mut mesh = EditableMesh::new(vec![places], &triangles);
-        let stars = Stars::new(&mesh, &[(0..6).collect()], &[]);
+        let curves = Curves {
+            rings: vec![(0..6).collect()],
+            landmarks: vec![],
+            paths: vec![],
+        };
+        let stars = Stars::new(&mesh, &curves);
         minimise(&mut mesh, &stars, 30);
         assert!(mesh.positions[0][6].norm() < 0.05, "{}", mesh.positions[0][6]);
     }

@@ -1,6 +1,8 @@
 //! Compatible edge flips (NWM 3.1, Surazsky and Gotsman 2004): an edge is flipped in all poses at once if that is valid
 //! in every pose and raises the worst angle of its two triangles over all poses.
 
+use std::collections::BTreeSet;
+
 use super::super::editable::EditableMesh;
 use crate::mesh::geometry;
 
@@ -10,14 +12,19 @@ const SMALLEST_GAIN_RAD: f64 = 1e-9;
 /// Passes over all edges, at most. Each flip raises a worst angle, so the passes end by themselves; three or four do.
 const PASSES: usize = 12;
 
-/// Flips until no flip helps; returns how many were made.
-pub(super) fn flip(mesh: &mut EditableMesh) -> usize {
+/// Flips until no flip helps; returns how many were made. The edges of `paths` stay.
+pub(super) fn flip(mesh: &mut EditableMesh, paths: &[Vec<usize>]) -> usize {
+    let kept: BTreeSet<(usize, usize)> = paths
+        .iter()
+        .flat_map(|path| path.windows(2))
+        .map(|link| (link[0].min(link[1]), link[0].max(link[1])))
+        .collect();
     let mut total = 0;
     for _ in 0..PASSES {
         let mut edges: Vec<(usize, usize)> = mesh
             .triangles()
             .flat_map(|(_, triangle)| crate::mesh::directed_edges(triangle))
-            .filter(|(a, b)| a < b)
+            .filter(|(a, b)| a < b && !kept.contains(&(*a, *b)))
             .collect();
         edges.sort_unstable();
         let flipped = edges.into_iter().filter(|&(a, b)| flip_edge(mesh, a, b)).count();

@@ -1,7 +1,7 @@
 //! Refinement: a valid compatible triangulation becomes a good one.
 //!
-//! Input and output: a [`CompatibleMesh`]; the boundary curves and the interior landmarks stay, point
-//! for point, but boundary edges may be split.
+//! Input and output: a [`CompatibleMesh`]; the boundary curves, the interior landmarks and the
+//! paths stay, point for point, but their edges may be split.
 //! Source: NWM 3.1 (angle-based smoothing and compatible flips, after Surazsky and Gotsman 2004); the distortion step
 //! is ours.
 //!
@@ -29,7 +29,7 @@ mod widen;
 mod tests;
 
 use super::CompatibleMesh;
-use super::editable::EditableMesh;
+use super::editable::{Curves, EditableMesh};
 use crate::math::point;
 use crate::mesh::{TopologyError, geometry};
 use star::Stars;
@@ -112,31 +112,35 @@ pub fn refine(mesh: &CompatibleMesh, options: &RefineOptions) -> Result<(Compati
         });
     }
     let diagonals: Vec<f64> = mesh.positions.iter().map(point::diagonal).collect();
-    let mut rings = mesh.rings.clone();
+    let mut curves = Curves {
+        rings: mesh.rings.clone(),
+        landmarks: mesh.landmarks.clone(),
+        paths: mesh.paths.clone(),
+    };
     let mut work = EditableMesh::new(mesh.positions.clone(), mesh.topology.triangles());
     let start = work.vertex_count();
-    let mut flips = flip::flip(&mut work);
+    let mut flips = flip::flip(&mut work, &curves.paths);
 
     // Halve the length from a coarse start: long thin triangles are cut where they are long, then relax.
     let mut length = options.edge_length * 8.0;
     while length > options.edge_length * 0.99 {
-        split::split_long_edges(&mut work, &mut rings, &diagonals, length);
-        flips += flip::flip(&mut work);
-        let stars = Stars::new(&work, &rings, &mesh.landmarks);
+        split::split_long_edges(&mut work, &mut curves, &diagonals, length);
+        flips += flip::flip(&mut work, &curves.paths);
+        let stars = Stars::new(&work, &curves);
         smooth::smooth(&mut work, &stars, SMOOTHING_SWEEPS);
-        flips += flip::flip(&mut work);
+        flips += flip::flip(&mut work, &curves.paths);
         length *= 0.5;
     }
     for _ in 0..DISTORTION_ROUNDS {
-        let stars = Stars::new(&work, &rings, &mesh.landmarks);
+        let stars = Stars::new(&work, &curves);
         distortion::minimise(&mut work, &stars, DISTORTION_SWEEPS);
-        flips += flip::flip(&mut work);
+        flips += flip::flip(&mut work, &curves.paths);
     }
-    let stars = Stars::new(&work, &rings, &mesh.landmarks);
+    let stars = Stars::new(&work, &curves);
     widen::widen(&mut work, &stars, options.smallest_angle_deg.to_radians());
 
     let splits = work.vertex_count() - start;
-    let refined = work.finish(&rings, &mesh.landmarks, mesh.steiner)?;
+    let refined = work.finish(&curves, mesh.steiner)?;
     let mut angles = worst_angles_deg(&refined);
     angles.sort_by(f64::total_cmp);
     let report = RefineReport {

@@ -2,17 +2,23 @@
 
 use std::collections::BTreeMap;
 
-use super::super::editable::EditableMesh;
+use super::super::editable::{Curves, EditableMesh};
 use crate::math::Point;
 
 /// Splits edges whose length over the pose's diagonal, in the mean over the poses, exceeds `length`, longest first.
-/// Boundary edges get their new vertex into `rings`.
-pub(super) fn split_long_edges(mesh: &mut EditableMesh, rings: &mut [Vec<usize>], diagonals: &[f64], length: f64) {
+/// The new vertices of edges of rings and paths become part of these.
+pub(super) fn split_long_edges(mesh: &mut EditableMesh, curves: &mut Curves, diagonals: &[f64], length: f64) {
     let mut on_boundary: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    let rings = &mut curves.rings;
     for (ring, vertices) in rings.iter().enumerate() {
         for (k, &v) in vertices.iter().enumerate() {
             on_boundary.insert((v, vertices[(k + 1) % vertices.len()]), ring);
         }
+    }
+    let mut on_path: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    let undirected = |a: usize, b: usize| (a.min(b), a.max(b));
+    for (path, vertices) in curves.paths.iter().enumerate() {
+        on_path.extend(vertices.windows(2).map(|link| (undirected(link[0], link[1]), path)));
     }
     // A split never makes an edge longer than the one it cuts, except from the new vertex to an opposite corner: work
     // through lists, longest first, until no long edge is left.
@@ -34,6 +40,17 @@ pub(super) fn split_long_edges(mesh: &mut EditableMesh, rings: &mut [Vec<usize>]
         for &(_, a, b) in &long[..count] {
             if let Some(middle) = split_edge(mesh, a, b) {
                 any = true;
+                if let Some(path) = on_path.remove(&undirected(a, b)) {
+                    on_path.insert(undirected(a, middle), path);
+                    on_path.insert(undirected(middle, b), path);
+                    let vertices = &mut curves.paths[path];
+                    let link = vertices
+                        .windows(2)
+                        .position(|link| undirected(link[0], link[1]) == undirected(a, b));
+                    if let Some(link) = link {
+                        vertices.insert(link + 1, middle);
+                    }
+                }
                 if let Some(ring) = on_boundary.remove(&(a, b)) {
                     on_boundary.insert((a, middle), ring);
                     on_boundary.insert((middle, b), ring);

@@ -1,6 +1,6 @@
 //! The triangles around each movable vertex, laid out flat for sweeps that leave the topology alone.
 
-use super::super::editable::EditableMesh;
+use super::super::editable::{Curves, EditableMesh};
 use crate::math::{Point, predicate};
 use crate::mesh::geometry;
 
@@ -13,10 +13,16 @@ pub(super) struct Stars {
 }
 
 impl Stars {
-    /// The stars of all vertices that are on no ring and are no landmark.
-    pub(super) fn new(mesh: &EditableMesh, rings: &[Vec<usize>], landmarks: &[usize]) -> Self {
+    /// The stars of all vertices that are on no ring or path and are no landmark.
+    pub(super) fn new(mesh: &EditableMesh, curves: &Curves) -> Self {
         let mut fixed = vec![false; mesh.vertex_count()];
-        for &v in rings.iter().flatten().chain(landmarks) {
+        for &v in curves
+            .rings
+            .iter()
+            .chain(&curves.paths)
+            .flatten()
+            .chain(&curves.landmarks)
+        {
             fixed[v] = true;
         }
         let mut stars = Self {

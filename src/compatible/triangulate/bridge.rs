@@ -1,101 +1,159 @@
-//! Joins the holes and interior landmarks of N polygons to their outer rings, so that one weakly simple polygon a pose is left.
+//! Joins what lies inside N polygons (holes, landmarks, paths) to their outer rings, so that one weakly simple polygon
+//! a pose is left.
 //!
-//! A bridge is a pair of vertices of two rings that see one another in every pose. Holes are joined one after another,
-//! each time by the bridge that is shortest relative to the pose's size, in the pose where it is longest. The polygon
-//! then runs along the bridge to the hole, once around the hole, and back. A landmark is a hole of one vertex. The paper has
-//! neither.
-//! Cost O(e) for each pair of vertices looked at, e the number of edges.
+//! A bridge leads from a visit of the walk around the region to a visit of an island; see [`super::free_space`] for
+//! these words. Islands are joined one after another, each time
+//! 1. by the segment that is inside every pose and the shortest relative to the pose's size, in the pose where it is
+//!    longest; where no such segment is left,
+//! 2. by a path over Steiner points, as many in every pose: the one with the fewest of them, and of these the shortest
+//!    ([`super::bridge_path`]).
+//!
+//! The walk then runs along the bridge to the island, once around it, and back. There is always a bridge: free space is
+//! connected in every pose, and the paths of different poses need nothing in common but their ends and their length.
+//! The paper has neither holes nor landmarks.
+//! Cost O(m^2) for each island, m the number of vertices.
 
-use crate::math::{Point, point, predicate};
+use super::bridge_path;
+use super::free_space::{FreeSpace, Visits};
+use crate::math::{Point, point};
 
-/// The vertices of all rings as one closed walk; the ends of bridges appear twice. `positions` are per pose, `rings`
-/// index them, outer ring first.
+/// The walk around everything, and how many Steiner points were added.
+#[derive(Debug)]
+pub(super) struct Joined {
+    pub(super) walk: Vec<usize>,
+    pub(super) steiner: usize,
+}
+
+/// Where there is no room between edges in double precision.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Narrow {
+    pub(super) pose: usize,
+    pub(super) place: Point,
+}
+
+/// From a visit of the walk to a visit of an island, over as many points in every pose.
+#[derive(Debug)]
+pub(super) struct Bridge {
+    pub(super) from: usize,
+    pub(super) to: usize,
+    /// #poses x #points.
+    pub(super) interior: Vec<Vec<Point>>,
+}
+
+/// The region around which `walk` runs, with its islands joined. Steiner points are added to `positions` (per pose).
 ///
 /// # Errors
-/// The number of a ring that no bridge reaches.
-pub(super) fn join_rings(positions: &[Vec<Point>], rings: &[Vec<usize>]) -> Result<Vec<usize>, usize> {
-    let mut walk = rings[0].clone();
-    let mut bridges: Vec<(usize, usize)> = Vec::new();
-    let mut waiting: Vec<usize> = (1..rings.len()).collect();
+/// [`Narrow`] where double precision has no room for a bridge.
+pub(super) fn join_islands(
+    positions: &mut [Vec<Point>],
+    mut walk: Vec<usize>,
+    mut islands: Vec<Vec<usize>>,
+) -> Result<Joined, Narrow> {
     let diagonals: Vec<f64> = positions.iter().map(point::diagonal).collect();
-    while let Some(&first) = waiting.first() {
-        let bridge = shortest_bridge(positions, rings, &walk, &waiting, &bridges, &diagonals).ok_or(first)?;
-        let ring = &rings[bridge.ring];
-        // Back to where it was entered; a ring of one vertex is visited once.
-        let visits = if ring.len() == 1 { 1 } else { ring.len() + 1 };
-        let mut detour: Vec<usize> = (0..visits).map(|k| ring[(bridge.in_ring + k) % ring.len()]).collect();
-        detour.push(walk[bridge.in_walk]);
-        bridges.push((walk[bridge.in_walk], ring[bridge.in_ring]));
-        walk.splice(bridge.in_walk + 1..bridge.in_walk + 1, detour);
-        waiting.retain(|&r| r != bridge.ring);
-    }
-    Ok(walk)
-}
-
-struct Bridge {
-    in_walk: usize,
-    ring: usize,
-    in_ring: usize,
-}
-
-fn shortest_bridge(
-    positions: &[Vec<Point>],
-    rings: &[Vec<usize>],
-    walk: &[usize],
-    waiting: &[usize],
-    bridges: &[(usize, usize)],
-    diagonals: &[f64],
-) -> Option<Bridge> {
-    let mut candidates = Vec::new();
-    for (in_walk, &from) in walk.iter().enumerate() {
-        for &ring in waiting {
-            for (in_ring, &to) in rings[ring].iter().enumerate() {
-                let length = positions
-                    .iter()
-                    .zip(diagonals)
-                    .map(|(p, diagonal)| (p[to] - p[from]).norm() / diagonal)
-                    .fold(0.0, f64::max);
-                candidates.push((length, in_walk, ring, in_ring));
+    let mut steiner = 0;
+    while !islands.is_empty() {
+        let visits = Visits::new(std::iter::once(&walk).chain(&islands));
+        let spaces: Vec<FreeSpace> = positions
+            .iter()
+            .enumerate()
+            .map(|(pose, points)| {
+                FreeSpace::new(points, &visits).ok_or(Narrow {
+                    pose,
+                    place: points[islands[0][0]],
+                })
+            })
+            .collect::<Result<_, _>>()?;
+        let sights = Sights::new(&spaces, &visits);
+        let length = |from: usize, to: usize| {
+            let (a, b) = (visits.vertex[from], visits.vertex[to]);
+            positions
+                .iter()
+                .zip(&diagonals)
+                .map(|(p, diagonal)| (p[b] - p[a]).norm() / diagonal)
+                .fold(0.0, f64::max)
+        };
+        let bridge = match sights.shortest_common(&length) {
+            Some((from, to)) => Bridge {
+                from,
+                to,
+                interior: vec![Vec::new(); positions.len()],
+            },
+            None => bridge_path::fewest_bends(positions, &diagonals, &visits, &spaces, &sights, &length)?,
+        };
+        let mut points: Vec<usize> = Vec::new();
+        for k in 0..bridge.interior[0].len() {
+            points.push(positions[0].len());
+            for (positions, interior) in positions.iter_mut().zip(&bridge.interior) {
+                positions.push(interior[k]);
             }
         }
+        steiner += points.len();
+        let which = visits.starts.partition_point(|&start| start <= bridge.to) - 2;
+        let island = islands.remove(which);
+        let entered = bridge.to - visits.starts[which + 1];
+        // Back to where it was entered; a single vertex is visited once.
+        let around = if island.len() == 1 { 1 } else { island.len() + 1 };
+        let mut detour = points.clone();
+        detour.extend((0..around).map(|k| island[(entered + k) % island.len()]));
+        detour.extend(points.iter().rev());
+        detour.push(walk[bridge.from]);
+        walk.splice(bridge.from + 1..bridge.from + 1, detour);
     }
-    candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2, a.3).cmp(&(b.1, b.2, b.3))));
-    candidates.into_iter().find_map(|(_, in_walk, ring, in_ring)| {
-        let (from, to) = (walk[in_walk], rings[ring][in_ring]);
-        let clear = positions
-            .iter()
-            .all(|p| is_clear(p, rings, bridges, from, to) && starts_inside(p, walk, in_walk, to));
-        clear.then_some(Bridge { in_walk, ring, in_ring })
-    })
+    Ok(Joined { walk, steiner })
 }
 
-/// Whether the segment between two vertices of different rings touches no edge and no bridge but at its ends.
-fn is_clear(points: &[Point], rings: &[Vec<usize>], bridges: &[(usize, usize)], from: usize, to: usize) -> bool {
-    let edges = rings
-        .iter()
-        .flat_map(|ring| (0..ring.len()).map(|k| (ring[k], ring[(k + 1) % ring.len()])));
-    edges.chain(bridges.iter().copied()).all(|(a, b)| {
-        if a == from || b == from || a == to || b == to {
-            let other = if a == from || a == to { b } else { a };
-            other == from || other == to || !predicate::on_segment(points[other], points[from], points[to])
-        } else {
-            !predicate::touch(points[a], points[b], points[from], points[to])
+/// Which visits of the walk each visit of an island sees, in every pose.
+#[derive(Debug)]
+pub(super) struct Sights {
+    /// How many visits the walk has: they are the first.
+    walk: usize,
+    /// #poses x #visits of islands, the visits of the walk it sees, in order.
+    seen: Vec<Vec<Vec<usize>>>,
+}
+
+impl Sights {
+    fn new(spaces: &[FreeSpace], visits: &Visits) -> Self {
+        let (walk, count) = (visits.starts[1], visits.vertex.len());
+        let seen_from = |space: &FreeSpace, visit: usize| {
+            let mut seen = space.seen_from(visit);
+            seen.retain(|&other| other < walk);
+            seen
+        };
+        Self {
+            walk,
+            seen: spaces
+                .iter()
+                .map(|space| (walk..count).map(|visit| seen_from(space, visit)).collect())
+                .collect(),
         }
-    })
-}
+    }
 
-/// Whether the segment leaves the walk, at this visit of its start, into the interior. Only vertices that the walk
-/// visits twice can fail: the interior angle is divided between the visits.
-fn starts_inside(points: &[Point], walk: &[usize], at: usize, to: usize) -> bool {
-    let count = walk.len();
-    let place = |k: usize| points[walk[k % count]];
-    let (previous, here, next) = (place(at + count - 1), place(at), place(at + 1));
-    let left_of_next = predicate::orientation(here, next, points[to]).is_gt();
-    let right_of_previous = predicate::orientation(here, points[to], previous).is_gt();
-    if predicate::orientation(previous, here, next).is_gt() {
-        left_of_next && right_of_previous
-    } else {
-        left_of_next || right_of_previous
+    /// Whether a visit of the walk and one of an island see one another in a pose.
+    pub(super) fn sees(&self, pose: usize, from: usize, to: usize) -> bool {
+        self.seen[pose][to - self.walk].binary_search(&from).is_ok()
+    }
+
+    /// The pair that sees one another in every pose and has the least `length`.
+    fn shortest_common(&self, length: &dyn Fn(usize, usize) -> f64) -> Option<(usize, usize)> {
+        let mut best: Option<(f64, usize, usize)> = None;
+        for (island_visit, seen) in self.seen[0].iter().enumerate() {
+            let to = self.walk + island_visit;
+            for &from in seen {
+                if (1..self.seen.len()).all(|pose| self.sees(pose, from, to)) {
+                    let found = (length(from, to), from, to);
+                    if best.is_none_or(|best| {
+                        found
+                            .0
+                            .total_cmp(&best.0)
+                            .then((from, to).cmp(&(best.1, best.2)))
+                            .is_lt()
+                    }) {
+                        best = Some(found);
+                    }
+                }
+            }
+        }
+        best.map(|(_, from, to)| (from, to))
     }
 }
 
@@ -108,9 +166,9 @@ mod tests {
         let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [1.0, 2.0], [2.0, 2.0]]
             .map(Point::from)
             .to_vec();
-        let walk = join_rings(&[points], &[vec![0, 1, 2, 3], vec![4], vec![5]]).expect("all visible");
-        assert_eq!(walk.len(), 4 + 2 * 2);
-        assert_eq!(walk.iter().filter(|&&v| v == 5).count(), 1);
+        let joined = join_islands(&mut [points], vec![0, 1, 2, 3], vec![vec![4], vec![5]]).expect("all visible");
+        assert_eq!((joined.walk.len(), joined.steiner), (4 + 2 * 2, 0));
+        assert_eq!(joined.walk.iter().filter(|&&v| v == 5).count(), 1);
     }
 
     #[test]
@@ -122,12 +180,12 @@ mod tests {
             .chain(square(1.0, 1.0, 2.0))
             .chain(square(5.0, 5.0, 2.0))
             .collect();
-        let rings = vec![(0..4).collect(), (4..8).collect(), (8..12).collect()];
-        let walk = join_rings(&[points], &rings).expect("all visible");
+        let islands = vec![(4..8).collect(), (8..12).collect()];
+        let joined = join_islands(&mut [points], (0..4).collect(), islands).expect("all visible");
         // Twelve vertices, and two more for each bridge.
-        assert_eq!(walk.len(), 16);
+        assert_eq!((joined.walk.len(), joined.steiner), (16, 0));
         for v in 0..12 {
-            assert!(walk.contains(&v));
+            assert!(joined.walk.contains(&v));
         }
     }
 }

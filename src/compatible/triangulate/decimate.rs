@@ -8,7 +8,7 @@
 
 use super::ear_clipping::triangulate_polygon;
 use super::line_of_sight;
-use super::patch::Resolver;
+use super::patch::{Kept, Resolver};
 use super::visibility::{Relation, Sight};
 use crate::compatible::editable::EditableMesh;
 use crate::mesh::geometry;
@@ -22,13 +22,13 @@ const PASSES: usize = 20;
 /// Rounds without any gain before the search ends.
 const IDLE_ROUNDS: usize = 8;
 
-/// Removes what interior vertices it can, of those numbered `boundary_count` and up; returns how many.
-pub(super) fn decimate(mesh: &mut EditableMesh, boundary_count: usize) -> usize {
+/// Removes what interior vertices it can, but for what is to be kept; returns how many.
+pub(super) fn decimate(mesh: &mut EditableMesh, kept: &Kept) -> usize {
     let mut removed = 0;
-    let mut resolver = Resolver::new(boundary_count);
+    let mut resolver = Resolver::new(kept);
     let mut idle = 0;
     while idle < IDLE_ROUNDS {
-        let saved = remove_all(mesh, boundary_count) + resolver.resolve(mesh);
+        let saved = remove_all(mesh, kept.below) + resolver.resolve(mesh);
         removed += saved;
         idle = if saved > 0 { 0 } else { idle + 1 };
         let Some(saved) = resolver.shake(mesh) else {

@@ -65,7 +65,7 @@ fn is_ear(points: &[Point], remaining: &[usize], at: usize) -> bool {
 
 /// Whether the direction from `at` to `target` lies strictly in the interior angle between the polygon edges
 /// `previous at` and `at next`, or along one of them.
-fn in_angle(previous: Point, at: Point, next: Point, target: Point) -> bool {
+pub(super) fn in_angle(previous: Point, at: Point, next: Point, target: Point) -> bool {
     let left_of_next = predicate::orientation(at, next, target);
     let right_of_previous = predicate::orientation(at, target, previous);
     if predicate::orientation(previous, at, next).is_gt() {

@@ -4,7 +4,8 @@
 //! vertex by vertex. Source: NWM 3.1 "Compatible triangulation", after Baxter, Barla, Anjyo (2008); the last resort
 //! after Aronov, Seidel, Souvaine, "On compatible triangulations of simple polygons" (1993).
 //!
-//! Holes and interior landmarks are first joined to the outer ring by bridges ([`bridge`]). A piece is a list of corresponding vertices that
+//! What is to be met inside ([`features`]) may divide the polygons ([`regions`]); holes and all else that lies inside a
+//! region are first joined to the walk around it by bridges ([`bridge`]). A piece is a list of corresponding vertices that
 //! bound a simple polygon (weakly simple along bridges) in every pose. Each piece ([`division`]) is
 //! 1. triangulated with diagonals that have line of sight in all poses, or divided by those that leave the least to
 //!    Steiner points ([`line_of_sight`]); what has none left is
@@ -25,31 +26,44 @@
 //! the patches.
 
 mod bridge;
+mod bridge_path;
 mod chord_overlay;
 mod convex;
 mod decimate;
 mod division;
 mod ear_clipping;
+mod features;
+mod free_space;
 mod line_of_sight;
 mod link_path;
 mod patch;
+mod regions;
 mod single_steiner;
 mod visibility;
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_holes;
+#[cfg(test)]
+mod tests_paths;
+
+pub use features::{Feature, FeaturePath, Features, PathEnd};
 
 use super::CompatibleMesh;
-use super::editable::EditableMesh;
+use super::editable::{Curves, EditableMesh};
 use crate::math::Point;
 use crate::mesh::TopologyError;
 use crate::outline::Outline;
 use division::Division;
+use patch::Kept;
 
 /// Steiner points by the stage that added them, and how many were taken out again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct TriangulateReport {
+    /// Added on bridges to holes, landmarks and paths.
+    pub bridge: usize,
     /// Added as hubs of a star or partition (stage 2).
     pub single: usize,
     /// Added on link paths (stage 3).
@@ -81,27 +95,37 @@ pub enum TriangulateError {
         /// Vertices of the same ring in pose 0.
         expected: usize,
     },
-    /// No hole can be joined to the rest by a segment that is inside every pose.
-    #[error(
-        "hole {hole} has no vertex that sees the same outline or hole vertex in every pose; fill the holes (holes = \"fill\") or move it"
-    )]
-    NoBridge {
-        /// Which hole, from 0.
-        hole: usize,
+    /// A feature is not inside its polygon, or has not one place a pose.
+    #[error("{feature} is not inside the polygon of pose {pose}")]
+    FeatureOutside {
+        /// Which feature.
+        feature: Feature,
+        /// Which pose.
+        pose: usize,
     },
-    /// An interior landmark sees no vertex that it sees in every pose.
-    #[error(
-        "interior landmark {landmark} sees no outline vertex or other landmark that it sees in every pose; move it, or add a landmark between"
-    )]
-    LandmarkHidden {
-        /// Which interior landmark.
-        landmark: usize,
+    /// Two features touch, or a path touches itself.
+    #[error("{first} meets {second} in pose {pose}; draw them apart")]
+    FeaturesMeet {
+        /// A feature.
+        first: Feature,
+        /// The other; the same for a path that touches itself.
+        second: Feature,
+        /// Which pose.
+        pose: usize,
     },
-    /// An interior landmark is not inside its polygon, or has not one place a pose.
-    #[error("interior landmark {landmark} is not inside the polygon of pose {pose}")]
-    LandmarkOutside {
-        /// Which interior landmark.
-        landmark: usize,
+    /// A path has no edge, or an end at no vertex of the polygons.
+    #[error("path {path} needs two different points at least, and ends inside or on vertices of the polygons")]
+    PathShort {
+        /// Which path.
+        path: usize,
+    },
+    /// A hole, landmark or path lies on different sides of a path.
+    #[error(
+        "pose {pose} has something on the other side of path {path} than pose 0; let the same things lie on each side"
+    )]
+    PathSides {
+        /// Which path.
+        path: usize,
         /// Which pose.
         pose: usize,
     },
@@ -122,17 +146,44 @@ pub enum TriangulateError {
     Topology(#[from] TopologyError),
 }
 
+impl From<bridge::Narrow> for TriangulateError {
+    fn from(narrow: bridge::Narrow) -> Self {
+        Self::TooNarrow {
+            pose: narrow.pose,
+            x: narrow.place.x,
+            y: narrow.place.y,
+        }
+    }
+}
+
 /// Triangulates N polygons compatibly, with a vertex at each interior landmark.
 ///
-/// `landmarks` are points inside the polygons: #landmarks x #poses. Vertex `k` of ring `r` is vertex `k` of the mesh plus
-/// the lengths of the rings before; the landmarks follow, then Steiner points.
+/// `landmarks` are points inside the polygons: #landmarks x #poses; see [`triangulate_features`].
 ///
 /// # Errors
-/// [`TriangulateError`] if the polygons do not correspond, a hole or a landmark cannot be joined, or a corridor is too
-/// narrow for double precision.
+/// As [`triangulate_features`].
 pub fn triangulate(
     polygons: &[Outline],
     landmarks: &[Vec<Point>],
+) -> Result<(CompatibleMesh, TriangulateReport), TriangulateError> {
+    let features = Features {
+        points: landmarks.to_vec(),
+        paths: Vec::new(),
+    };
+    triangulate_features(polygons, &features)
+}
+
+/// Triangulates N polygons compatibly, with a vertex at each point and a chain of edges along each path of `features`.
+///
+/// Vertex `k` of ring `r` is vertex `k` of the mesh plus the lengths of the rings before; then follow the points, the
+/// points of the paths, and Steiner points.
+///
+/// # Errors
+/// [`TriangulateError`] if the polygons do not correspond, a feature is outside or meets another, poses disagree about
+/// what lies beside a path, or a corridor is too narrow for double precision.
+pub fn triangulate_features(
+    polygons: &[Outline],
+    features: &Features,
 ) -> Result<(CompatibleMesh, TriangulateReport), TriangulateError> {
     let first = polygons.first().ok_or(TriangulateError::NoPose)?;
     for (pose, polygon) in polygons.iter().enumerate() {
@@ -149,45 +200,42 @@ pub fn triangulate(
             }
         }
     }
-    for (landmark, places) in landmarks.iter().enumerate() {
-        for (pose, polygon) in polygons.iter().enumerate() {
-            if !places.get(pose).is_some_and(|&place| polygon.contains(place)) {
-                return Err(TriangulateError::LandmarkOutside { landmark, pose });
-            }
-        }
-    }
-    let positions: Vec<Vec<Point>> = polygons
-        .iter()
-        .enumerate()
-        .map(|(pose, polygon)| {
-            let boundary = polygon.rings().iter().flat_map(|ring| ring.points()).copied();
-            boundary.chain(landmarks.iter().map(|places| places[pose])).collect()
-        })
-        .collect();
     let mut rings: Vec<Vec<usize>> = Vec::new();
     let mut count = 0;
     for ring in first.rings() {
         rings.push((count..count + ring.len()).collect());
         count += ring.len();
     }
-    let landmark_vertices: Vec<usize> = (count..count + landmarks.len()).collect();
-    count += landmarks.len();
-    // A landmark is joined like a hole of one vertex.
-    let joined: Vec<Vec<usize>> = rings
+    let mut positions: Vec<Vec<Point>> = polygons
         .iter()
-        .cloned()
-        .chain(landmark_vertices.iter().map(|&vertex| vec![vertex]))
+        .map(|polygon| polygon.rings().iter().flat_map(|ring| ring.points()).copied().collect())
         .collect();
-    let walk = bridge::join_rings(&positions, &joined).map_err(|ring| match ring.checked_sub(rings.len()) {
-        Some(landmark) => TriangulateError::LandmarkHidden { landmark },
-        None => TriangulateError::NoBridge { hole: ring - 1 },
-    })?;
+    let numbered = features::number(features, &rings, &mut positions)?;
+    features::check(polygons, &rings, &numbered, &positions)?;
     let mut division = Division::new(positions);
-    division.solve(walk)?;
+    for region in regions::regions(&rings, &numbered, &division.positions)? {
+        let joined = bridge::join_islands(&mut division.positions, region.walk, region.islands)?;
+        division.report.bridge += joined.steiner;
+        division.solve(joined.walk)?;
+    }
 
     let mut mesh = EditableMesh::new(division.positions, &division.triangles);
     let mut report = division.report;
-    report.decimated = decimate::decimate(&mut mesh, count);
-    let steiner = report.single + report.link + report.overlay - report.decimated;
-    Ok((mesh.finish(&rings, &landmark_vertices, steiner)?, report))
+    let along = |path: &Vec<usize>| {
+        path.windows(2)
+            .flat_map(|ends| [(ends[0], ends[1]), (ends[1], ends[0])])
+            .collect::<Vec<_>>()
+    };
+    let kept = Kept {
+        below: numbered.count,
+        edges: numbered.paths.iter().flat_map(along).collect(),
+    };
+    report.decimated = decimate::decimate(&mut mesh, &kept);
+    let steiner = report.bridge + report.single + report.link + report.overlay - report.decimated;
+    let curves = Curves {
+        rings,
+        landmarks: numbered.points,
+        paths: numbered.paths,
+    };
+    Ok((mesh.finish(&curves, steiner)?, report))
 }

@@ -47,11 +47,19 @@ enum Extent {
     Widened,
 }
 
+/// What no patch may take away.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Kept {
+    /// Vertices with smaller numbers.
+    pub(super) below: usize,
+    /// Edges of lines inside, from both ends.
+    pub(super) edges: BTreeSet<(usize, usize)>,
+}
+
 /// Solves patches anew and remembers which ones cannot be done better.
 #[derive(Debug)]
-pub(super) struct Resolver {
-    /// Vertices with smaller numbers stay.
-    boundary_count: usize,
+pub(super) struct Resolver<'a> {
+    kept: &'a Kept,
     /// Per polygon without a better solution, with how many vertices none was found. The vertices of a mesh never move
     /// and their numbers are not used again, so a polygon stands for its patch.
     failed: BTreeMap<Vec<usize>, usize>,
@@ -59,10 +67,10 @@ pub(super) struct Resolver {
     state: u64,
 }
 
-impl Resolver {
-    pub(super) fn new(boundary_count: usize) -> Self {
+impl<'a> Resolver<'a> {
+    pub(super) fn new(kept: &'a Kept) -> Self {
         Self {
-            boundary_count,
+            kept,
             failed: BTreeMap::new(),
             work: 0,
             state: 0,
@@ -83,7 +91,7 @@ impl Resolver {
         let mut saved = 0;
         for pass in 0..PASSES {
             let before = saved;
-            let mut vertex = self.boundary_count;
+            let mut vertex = self.kept.below;
             while vertex < mesh.vertex_count() {
                 for size in sizes.clone() {
                     if mesh.degree(vertex) == 0 {
@@ -108,7 +116,7 @@ impl Resolver {
     /// returns how many vertices that saved by chance, or `None` when the work is used up.
     pub(super) fn shake(&mut self, mesh: &mut EditableMesh) -> Option<usize> {
         let mut saved = 0;
-        for vertex in self.boundary_count..mesh.vertex_count() {
+        for vertex in self.kept.below..mesh.vertex_count() {
             if mesh.degree(vertex) == 0 {
                 continue;
             }
@@ -158,7 +166,7 @@ impl Resolver {
             let beside: Vec<[usize; 3]> = triangles.iter().flat_map(|&t| beside(mesh, t)).collect();
             triangles.extend(beside);
         }
-        Patch::new(triangles, self.boundary_count)
+        Patch::new(triangles, self.kept)
     }
 
     /// The nearest Steiner point that is not a member, over triangles that share edges, and the triangles between.
@@ -176,7 +184,7 @@ impl Resolver {
             let mut found: BTreeMap<usize, (usize, [usize; 3])> = BTreeMap::new();
             for &triangle in &layer {
                 for v in triangle {
-                    if v >= self.boundary_count && !members.contains(&v) {
+                    if v >= self.kept.below && !members.contains(&v) {
                         found.entry(v).or_insert((0, triangle)).0 += 1;
                     }
                 }
@@ -278,12 +286,16 @@ struct Patch {
 }
 
 impl Patch {
-    /// `None` if the boundary is not one cycle through distinct vertices, or a vertex that has to stay is inside.
-    fn new(triangles: BTreeSet<[usize; 3]>, boundary_count: usize) -> Option<Self> {
+    /// `None` if the boundary is not one cycle through distinct vertices, or what has to stay is inside.
+    fn new(triangles: BTreeSet<[usize; 3]>, kept: &Kept) -> Option<Self> {
         let edges: BTreeSet<(usize, usize)> = triangles.iter().flat_map(|&t| crate::mesh::directed_edges(t)).collect();
         let mut after: BTreeMap<usize, usize> = BTreeMap::new();
         for &(a, b) in &edges {
-            if !edges.contains(&(b, a)) && after.insert(a, b).is_some() {
+            if edges.contains(&(b, a)) {
+                if kept.edges.contains(&(a, b)) {
+                    return None;
+                }
+            } else if after.insert(a, b).is_some() {
                 return None;
             }
         }
@@ -296,7 +308,7 @@ impl Patch {
         }
         let vertices: BTreeSet<usize> = triangles.iter().flatten().copied().collect();
         let inner: Vec<usize> = vertices.into_iter().filter(|v| !after.contains_key(v)).collect();
-        let may_go = !inner.is_empty() && inner.iter().all(|&v| v >= boundary_count);
+        let may_go = !inner.is_empty() && inner.iter().all(|&v| v >= kept.below);
         // With one boundary cycle, a disc has ring + 2 inner - 2 triangles.
         let is_disc = ring.len() == after.len() && triangles.len() + 2 == ring.len() + 2 * inner.len();
         (may_go && is_disc).then_some(Self { ring, inner, triangles })
@@ -318,10 +330,18 @@ mod tests {
         EditableMesh::new(vec![positions], &triangles)
     }
 
+    fn below(below: usize) -> Kept {
+        Kept {
+            below,
+            ..Kept::default()
+        }
+    }
+
     #[test]
     fn a_needless_hub_is_taken_out_of_its_patch() {
         let mut mesh = wheel();
-        let mut resolver = Resolver::new(6);
+        let kept = below(6);
+        let mut resolver = Resolver::new(&kept);
         let patch = resolver.patch_around(&mesh, 6, 1, Extent::Stars, 0).expect("a disc");
         assert_eq!((patch.ring.len(), &patch.inner[..]), (6, &[6][..]));
         assert_eq!(resolver.resolve_patch(&mut mesh, patch, 0, 0), 1);
@@ -331,7 +351,28 @@ mod tests {
     #[test]
     fn a_vertex_that_has_to_stay_is_never_inside_a_patch() {
         let mesh = wheel();
-        assert!(Resolver::new(7).patch_around(&mesh, 6, 1, Extent::Widened, 0).is_none());
+        let kept = below(7);
+        assert!(
+            Resolver::new(&kept)
+                .patch_around(&mesh, 6, 1, Extent::Widened, 0)
+                .is_none()
+        );
+    }
+
+    #[test]
+    fn an_edge_that_has_to_stay_is_never_inside_a_patch() {
+        // Two hubs with an edge between the quadrilaterals around them.
+        let triangles = || {
+            [[0, 1, 4], [1, 2, 4], [2, 0, 4], [0, 2, 5], [2, 3, 5], [3, 0, 5]]
+                .map(smallest_first)
+                .into()
+        };
+        assert!(Patch::new(triangles(), &below(4)).is_some());
+        let kept = Kept {
+            edges: [(0, 2), (2, 0)].into(),
+            ..below(4)
+        };
+        assert!(Patch::new(triangles(), &kept).is_none());
     }
 
     #[test]
@@ -343,7 +384,7 @@ mod tests {
             })
             .map(smallest_first)
             .collect();
-        assert!(Patch::new(ring, 0).is_none());
-        assert!(Patch::new([[0, 1, 2], [3, 4, 5]].into(), 0).is_none());
+        assert!(Patch::new(ring, &below(0)).is_none());
+        assert!(Patch::new([[0, 1, 2], [3, 4, 5]].into(), &below(0)).is_none());
     }
 }

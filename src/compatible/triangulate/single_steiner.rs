@@ -11,6 +11,7 @@
 //! of vertices.
 
 use super::convex::Convex;
+use super::ear_clipping::in_angle;
 use super::visibility::{Sight, View};
 use crate::math::{Point, point, predicate};
 
@@ -222,19 +223,22 @@ impl<'a> Rooms<'a> {
     }
 }
 
-/// Whether the segment from vertex `v` to the interior point `p` touches the polygon at `v` only. Exact.
+/// Whether the segment from vertex `v` to the interior point `p` touches the polygon at `v` only, and starts in the
+/// interior angle there. Exact. Where the polygon passes the place of `v` several times, along bridges, only the visit
+/// whose angle holds `p` sees it.
 pub(super) fn sees(points: &[Point], v: usize, p: Point) -> bool {
     let count = points.len();
-    (0..count).all(|e| {
-        let f = (e + 1) % count;
-        if e == v || f == v {
-            let other = if e == v { f } else { e };
-            predicate::orientation(points[v], points[other], p).is_ne()
-                || (points[other] - points[v]).dot(&(p - points[v])) < 0.0
+    let eye = points[v];
+    let clear = (0..count).all(|e| {
+        let (a, b) = (points[e], points[(e + 1) % count]);
+        if a == eye || b == eye {
+            let other = if a == eye { b } else { a };
+            predicate::orientation(eye, other, p).is_ne() || (other - eye).dot(&(p - eye)) < 0.0
         } else {
-            !predicate::touch(points[e], points[f], points[v], p)
+            !predicate::touch(a, b, eye, p)
         }
-    })
+    });
+    clear && in_angle(points[(v + count - 1) % count], eye, points[(v + 1) % count], p)
 }
 
 #[cfg(test)]

@@ -93,7 +93,8 @@ fn landmarks_become_vertices_even_where_they_turn_around_one_another() {
         );
     }
     let outside = triangulate(&polygons, &[vec![Point::new(1.0, 1.0), Point::new(-1.0, 1.0)]]).expect_err("outside");
-    assert_eq!(outside, TriangulateError::LandmarkOutside { landmark: 0, pose: 1 });
+    let feature = Feature::Point(0);
+    assert_eq!(outside, TriangulateError::FeatureOutside { feature, pose: 1 });
 }
 
 #[test]

@@ -7,6 +7,8 @@
 //!
 //! Two vertices see one another if the open segment between them is inside the polygon and touches no vertex.
 
+use std::collections::BTreeSet;
+
 use crate::math::{Point, point, predicate};
 
 /// A symmetric relation on m vertices.
@@ -73,6 +75,15 @@ pub(super) struct View {
 
 impl Sight {
     pub(super) fn new(points: Vec<Point>, triangles: Vec<[usize; 3]>) -> Self {
+        Self::between_walls(points, triangles, &BTreeSet::new())
+    }
+
+    /// A triangulation in which no one sees across `walls`, directed edges of the triangle that the wall bounds.
+    pub(super) fn between_walls(
+        points: Vec<Point>,
+        triangles: Vec<[usize; 3]>,
+        walls: &BTreeSet<(usize, usize)>,
+    ) -> Self {
         let mut owner = std::collections::BTreeMap::new();
         for (t, &triangle) in triangles.iter().enumerate() {
             for edge in crate::mesh::directed_edges(triangle) {
@@ -81,7 +92,10 @@ impl Sight {
         }
         let neighbours = triangles
             .iter()
-            .map(|&triangle| crate::mesh::directed_edges(triangle).map(|(a, b)| owner.get(&(b, a)).copied()))
+            .map(|&triangle| {
+                let across = |(a, b)| owner.get(&(b, a)).copied().filter(|_| !walls.contains(&(a, b)));
+                crate::mesh::directed_edges(triangle).map(across)
+            })
             .collect();
         Self {
             diagonal: point::diagonal(&points),
@@ -103,6 +117,23 @@ impl Sight {
             self.look_around(vertex, |_| {}, |seen| pairs.set(vertex, seen));
         }
         pairs
+    }
+
+    /// The vertices that `vertex` sees, in order; neighbours along polygon edges count.
+    pub(super) fn seen_from(&self, vertex: usize) -> Vec<usize> {
+        let mut seen: Vec<usize> = Vec::new();
+        self.look_around(vertex, |_| {}, |other| seen.push(other));
+        for triangle in self.triangles.iter().filter(|triangle| triangle.contains(&vertex)) {
+            seen.extend(triangle.iter().filter(|&&other| other != vertex));
+        }
+        seen.sort_unstable();
+        seen.dedup();
+        seen
+    }
+
+    /// The triangle across each edge of triangle `t`, the edge from corner `k` to corner `k + 1` first for `k = 0`.
+    pub(super) fn neighbours(&self, t: usize) -> [Option<usize>; 3] {
+        self.neighbours[t]
     }
 
     /// What `vertex` sees of every triangle.

@@ -1,4 +1,6 @@
-//! Landmarks: names and places on poses.
+//! Landmarks: names and places, or lines, on poses.
+
+use std::collections::BTreeMap;
 
 use toml::{Spanned, Value};
 
@@ -7,48 +9,88 @@ use crate::math::Point;
 use crate::outline::Ring;
 use crate::scene::error::SceneProblem;
 use crate::scene::file::LandmarkTable;
-use crate::scene::settings::SceneLandmark;
+use crate::scene::settings::{SceneLandmark, ScenePath};
 
 impl Reader<'_> {
-    pub(super) fn landmarks(&self, tables: &[Spanned<LandmarkTable>], names: &[&str]) -> Checked<Vec<SceneLandmark>> {
+    pub(super) fn landmarks(
+        &self,
+        tables: &[Spanned<LandmarkTable>],
+        names: &[&str],
+    ) -> Checked<(Vec<SceneLandmark>, Vec<ScenePath>)> {
         let mut landmarks: Vec<SceneLandmark> = Vec::new();
+        let mut paths: Vec<ScenePath> = Vec::new();
         for table in tables {
             let written = table.get_ref();
             let start = written.name.span().start;
             let name = written.name.get_ref().clone();
-            if name.is_empty() || landmarks.iter().any(|l| l.name == name) {
+            let is_taken = landmarks.iter().any(|l| l.name == name) || paths.iter().any(|path| path.name == name);
+            if name.is_empty() || is_taken {
                 return Err(self.fail(start, SceneProblem::BadName { kind: "landmark", name }));
             }
-            if let Some(path) = written.path.as_ref().filter(|p| *p.get_ref()) {
-                self.unsupported::<()>(path.span().start, "`path = true`", "name single points as landmarks")?;
+            let line = self.line(start);
+            if written.path.as_ref().is_some_and(|path| *path.get_ref()) {
+                let at = self.on_poses(&written.at, &name, names, |value, key| self.polyline(value, key))?;
+                paths.push(ScenePath { name, line, at });
+            } else {
+                let point = |value: &Spanned<Value>, key: &str| self.point(value.get_ref(), value.span().start, key);
+                let at = self.on_poses(&written.at, &name, names, point)?;
+                landmarks.push(SceneLandmark { name, line, at });
             }
-            let mut at = vec![None; names.len()];
-            for (pose, value) in &written.at {
-                let place = value.span().start;
-                let index = names
-                    .iter()
-                    .position(|n| n == pose)
-                    .ok_or_else(|| self.fail(place, unknown_pose(pose, &format!("landmark '{name}'"), names)))?;
-                at[index] = Some(self.point(value, &format!("landmark '{name}' on pose '{pose}'"))?);
-            }
-            landmarks.push(SceneLandmark {
-                name,
-                line: self.line(start),
-                at,
-            });
         }
-        Ok(landmarks)
+        Ok((landmarks, paths))
     }
 
-    fn point(&self, value: &Spanned<Value>, key: &str) -> Checked<Point> {
+    /// What a landmark says of each pose.
+    fn on_poses<T: Clone>(
+        &self,
+        written: &BTreeMap<String, Spanned<Value>>,
+        name: &str,
+        names: &[&str],
+        read: impl Fn(&Spanned<Value>, &str) -> Checked<T>,
+    ) -> Checked<Vec<Option<T>>> {
+        let mut at = vec![None; names.len()];
+        for (pose, value) in written {
+            let place = value.span().start;
+            let index = names
+                .iter()
+                .position(|n| n == pose)
+                .ok_or_else(|| self.fail(place, unknown_pose(pose, &format!("landmark '{name}'"), names)))?;
+            at[index] = Some(read(value, &format!("landmark '{name}' on pose '{pose}'"))?);
+        }
+        Ok(at)
+    }
+
+    /// A line of two points or more; repeated points are merged.
+    fn polyline(&self, value: &Spanned<Value>, key: &str) -> Checked<Vec<Point>> {
         let start = value.span().start;
+        let mut points: Vec<Point> = Vec::new();
+        for (k, point) in value
+            .get_ref()
+            .as_array()
+            .map(Vec::as_slice)
+            .unwrap_or_default()
+            .iter()
+            .enumerate()
+        {
+            let point = self.point(point, start, &format!("point {k} of {key}"))?;
+            if points.last() != Some(&point) {
+                points.push(point);
+            }
+        }
+        if points.len() < 2 {
+            let problem = format!("{key} must be a line of at least two different points, [[x, y], [x, y], ...]");
+            return Err(self.fail(start, SceneProblem::Format(problem)));
+        }
+        Ok(points)
+    }
+
+    fn point(&self, value: &Value, start: usize, key: &str) -> Checked<Point> {
         let number = |v: &Value| match v {
             Value::Float(f) => Some(*f),
             Value::Integer(i) => Some(*i as f64),
             _ => None,
         };
         let numbers: Option<Vec<f64>> = value
-            .get_ref()
             .as_array()
             .map(Vec::as_slice)
             .unwrap_or_default()

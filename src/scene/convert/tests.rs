@@ -90,6 +90,25 @@ keys = [ { time = 0, at = [0, 0] }, { time = 2.0, at = [1, 1] } ]
 }
 
 #[test]
+fn a_landmark_with_a_path_is_a_line_on_every_pose_that_has_it() {
+    let path = |at: &str| format!("{TWO}[[landmark]]\nname = \"brow\"\npath = true\nat = {{ {at} }}\n");
+    let scene = parse(&path("b = [[1, 2], [1, 2], [3, 4.5], [5, 6]]")).expect("a scene");
+    assert!(scene.landmarks.is_empty());
+    let line = [[1.0, 2.0], [3.0, 4.5], [5.0, 6.0]].map(Point::from).to_vec();
+    assert_eq!(scene.paths[0].at, vec![None, Some(line)]);
+    for (at, word) in [
+        ("a = [1, 2]", "point"),
+        ("a = [[1, 2]]", "two different points"),
+        ("a = [[1, 2], [3]]", "point 1"),
+        ("c = [[1, 2], [3, 4]]", "'c'"),
+    ] {
+        let (line, message) = refused(&path(at));
+        assert_eq!(line, Some(13), "{message}");
+        assert!(message.contains("'brow'") && message.contains(word), "{message}");
+    }
+}
+
+#[test]
 fn unknown_keys_are_refused_with_their_line() {
     let (line, message) = refused("version = 1\n[mesh]\nsimplfy = 0.1\n");
     assert_eq!(line, Some(3));
@@ -114,11 +133,6 @@ fn keys_of_later_releases_are_refused_by_name() {
             "[[pose]]\nname = \"c\"\nsource = { body = \"c.svg\" }\nat = [5, 5]\n",
             12,
             "layer",
-        ),
-        (
-            "[[landmark]]\nname = \"c\"\npath = true\nat = { a = [[1, 1], [2, 2]] }\n",
-            12,
-            "path",
         ),
     ] {
         let (found, message) = refused(&format!("{TWO}{text}"));

@@ -1,0 +1,295 @@
+//! The scene's landmarks, sorted: on the outlines, points inside, lines inside; and where they go in the poses that
+//! lack them.
+//!
+//! An end of a line that lies at the outline in every pose is an outline landmark, too: it guides the matching, and the
+//! line is joined to the outline's vertex there.
+
+use super::PipelineError;
+use super::drawings::{mirror_axis, reflected};
+use super::inside::{self, Obstacles};
+use super::landmark_path;
+use crate::compatible::{FeaturePath, Features, PathEnd};
+use crate::input::Drawing;
+use crate::matching::Landmark;
+use crate::math::{Point, point};
+use crate::outline::{ArcLength, Outline};
+use crate::scene::{Facing, Scene};
+
+/// How far a landmark may lie from the outline it is snapped to, as a fraction of the pose's diagonal: a few times the
+/// width of an ink line.
+const LANDMARK_REACH: f64 = 0.03;
+
+/// A landmark that in every pose lies inside the shape by more than this, as a fraction of the diagonal, is an interior
+/// one: about the width of an ink line.
+const INTERIOR_DEPTH: f64 = 0.01;
+
+/// Ends of lines nearer than this to an outline landmark in every pose, in perimeters, are that landmark.
+const SAME_PLACE: f64 = 2e-3;
+
+/// All landmarks of a scene. Places are those of the drawings as they are used: reflected where the pose is.
+pub(super) struct Landmarks {
+    /// On the outer rings, ends of lines included.
+    pub(super) on_outline: Vec<Landmark>,
+    pub(super) points: Vec<InteriorPoint>,
+    pub(super) paths: Vec<InteriorPath>,
+}
+
+/// A point inside.
+pub(super) struct InteriorPoint {
+    pub(super) name: String,
+    pub(super) line: usize,
+    pub(super) at: Vec<Option<Point>>,
+}
+
+/// A line inside.
+pub(super) struct InteriorPath {
+    pub(super) name: String,
+    pub(super) line: usize,
+    pub(super) at: Vec<Option<Vec<Point>>>,
+    /// Which outline landmark its start and its end are.
+    pub(super) ends: [Option<usize>; 2],
+}
+
+/// Sorts the scene's landmarks.
+///
+/// # Errors
+/// [`PipelineError`] if a landmark has no place, or is neither inside nor at the outline.
+pub(super) fn sorted(scene: &Scene, drawings: &[Drawing]) -> Result<Landmarks, PipelineError> {
+    let measured: Vec<ArcLength> = drawings.iter().map(|d| ArcLength::new(d.outline.outer())).collect();
+    let look = |pose: usize, place: Point| Found::new(scene, drawings, &measured, pose, place);
+    let nowhere = |landmark: &String, line: usize| PipelineError::LandmarkNowhere {
+        landmark: landmark.clone(),
+        line,
+    };
+    let mut sorted = Landmarks {
+        on_outline: Vec::new(),
+        points: Vec::new(),
+        paths: Vec::new(),
+    };
+    for landmark in &scene.landmarks {
+        let (name, line) = (landmark.name.clone(), landmark.line);
+        let found: Vec<Option<Found>> = (landmark.at.iter().enumerate())
+            .map(|(pose, place)| place.map(|place| look(pose, place)))
+            .collect();
+        if found.iter().all(Option::is_none) {
+            return Err(nowhere(&name, line));
+        }
+        if found.iter().flatten().all(Found::is_deep) {
+            let at = found.iter().map(|found| found.as_ref().map(|f| f.place)).collect();
+            sorted.points.push(InteriorPoint { name, line, at });
+        } else {
+            let at = snapped(scene, &name, line, &found)?;
+            sorted.on_outline.push(Landmark { name, at });
+        }
+    }
+    for path in &scene.paths {
+        let (name, line) = (path.name.clone(), path.line);
+        if path.at.iter().all(Option::is_none) {
+            return Err(nowhere(&name, line));
+        }
+        let mut ends = [None; 2];
+        for (end, word) in ["start", "end"].into_iter().enumerate() {
+            let found: Vec<Option<Found>> = (path.at.iter().enumerate())
+                .map(|(pose, points)| {
+                    let points = points.as_ref()?;
+                    let place = if end == 0 { points.first() } else { points.last() };
+                    Some(look(pose, *place?))
+                })
+                .collect();
+            let within_reach = found.iter().flatten().all(|f| f.distance <= LANDMARK_REACH * f.size);
+            let is_inside = found.iter().flatten().all(|f| f.inside);
+            if found.iter().flatten().all(Found::is_deep) || (is_inside && !within_reach) {
+                continue;
+            }
+            let name = format!("{name} ({word})");
+            let at = snapped(scene, &name, line, &found)?;
+            ends[end] = Some(sorted.on_outline_at(Landmark { name, at }));
+        }
+        let place = |pose: usize, points: &Vec<Point>| -> Vec<Point> {
+            points.iter().map(|&p| as_used(scene, drawings, pose, p)).collect()
+        };
+        let at = path
+            .at
+            .iter()
+            .enumerate()
+            .map(|(pose, points)| points.as_ref().map(|points| place(pose, points)));
+        let at = at.collect();
+        sorted.paths.push(InteriorPath { name, line, at, ends });
+    }
+    Ok(sorted)
+}
+
+impl Landmarks {
+    /// The number of an outline landmark, which may be there already.
+    fn on_outline_at(&mut self, landmark: Landmark) -> usize {
+        let is_same = |other: &Landmark| {
+            other.at.iter().zip(&landmark.at).all(|(a, b)| match (a, b) {
+                (Some(a), Some(b)) => (a - b - (a - b).round()).abs() < SAME_PLACE,
+                (None, None) => true,
+                _ => false,
+            })
+        };
+        self.on_outline.iter().position(is_same).unwrap_or_else(|| {
+            self.on_outline.push(landmark);
+            self.on_outline.len() - 1
+        })
+    }
+
+    /// What the triangulation has to meet inside `polygons`: lines simplified to `tolerance` (of the diagonals), and
+    /// everything placed in the poses that lack it. `anchors` are the places of the outline landmarks (#landmarks x
+    /// #poses). Notes say what was placed.
+    pub(super) fn features(
+        &self,
+        scene: &Scene,
+        drawings: &[Drawing],
+        polygons: &[Outline],
+        anchors: &[Vec<Point>],
+        tolerance: f64,
+    ) -> Result<(Features, Vec<String>), PipelineError> {
+        let mut features = Features::default();
+        let mut notes = Vec::new();
+        let mut obstacles: Vec<Obstacles> = polygons.iter().map(Obstacles::new).collect();
+        let deviations: Vec<f64> = polygons.iter().map(|polygon| tolerance * polygon.diagonal()).collect();
+        let lacking = |pose: usize, landmark: &str, line: usize| PipelineError::LandmarkMissing {
+            landmark: landmark.to_owned(),
+            line,
+            pose: scene.poses[pose].name.clone(),
+        };
+        for path in &self.paths {
+            let mut rows = landmark_path::corresponding(&path.at, &deviations);
+            let mut ends = [PathEnd::Inside; 2];
+            for (end, anchor) in path.ends.iter().enumerate() {
+                if let Some(places) = anchor.and_then(|anchor| anchors.get(anchor)) {
+                    let row = if end == 0 { 0 } else { rows.len() - 1 };
+                    rows.remove(row);
+                    ends[end] = PathEnd::Boundary {
+                        ring: 0,
+                        vertex: nearest_vertex(polygons, places),
+                    };
+                }
+            }
+            let mut points = Vec::with_capacity(rows.len());
+            for row in &rows {
+                let all: Option<Vec<Point>> = (0..polygons.len())
+                    .map(|pose| row[pose].or_else(|| inside::predicted(polygons, row, pose)))
+                    .collect();
+                points.push(all.ok_or_else(|| lacking(0, &path.name, path.line))?);
+            }
+            for (pose, obstacles) in obstacles.iter_mut().enumerate() {
+                obstacles.add_line(points.iter().map(|places| places[pose]));
+            }
+            for (pose, _) in path.at.iter().enumerate().filter(|(_, points)| points.is_none()) {
+                notes.push(format!(
+                    "landmark '{}' has no line in pose '{}': it follows the outline there; give it one if that is wrong",
+                    path.name, scene.poses[pose].name
+                ));
+            }
+            features.paths.push(FeaturePath { ends, points });
+        }
+        for landmark in &self.points {
+            for (pose, place) in landmark.at.iter().enumerate() {
+                if let Some(place) = place {
+                    obstacles[pose].add_point(*place);
+                }
+            }
+        }
+        for landmark in &self.points {
+            let mut places = Vec::with_capacity(polygons.len());
+            for (pose, place) in landmark.at.iter().enumerate() {
+                if let Some(place) = place {
+                    places.push(*place);
+                    continue;
+                }
+                let place = inside::predicted(polygons, &landmark.at, pose)
+                    .and_then(|place| obstacles[pose].nearest_free(&polygons[pose], place))
+                    .ok_or_else(|| lacking(pose, &landmark.name, landmark.line))?;
+                obstacles[pose].add_point(place);
+                let as_written = as_used(scene, drawings, pose, place);
+                notes.push(format!(
+                    "landmark '{}' has no place in pose '{}': it was put at ({:.1}, {:.1}); give it one if that is wrong",
+                    landmark.name, scene.poses[pose].name, as_written.x, as_written.y
+                ));
+                places.push(place);
+            }
+            features.points.push(places);
+        }
+        Ok((features, notes))
+    }
+}
+
+/// The vertex of the outer rings that is nearest to the given places, in the pose where it is farthest.
+fn nearest_vertex(polygons: &[Outline], places: &[Point]) -> usize {
+    let distance = |vertex: usize| {
+        polygons
+            .iter()
+            .zip(places)
+            .map(|(polygon, place)| (polygon.outer().point(vertex) - place).norm() / polygon.diagonal())
+            .fold(0.0, f64::max)
+    };
+    let count = polygons.first().map_or(0, |polygon| polygon.outer().len());
+    (0..count)
+        .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+        .unwrap_or(0)
+}
+
+/// A place of the source in the drawing as it is used. Its own inverse.
+fn as_used(scene: &Scene, drawings: &[Drawing], pose: usize, place: Point) -> Point {
+    match scene.poses[pose].facing {
+        Facing::AsDrawn => place,
+        Facing::Mirrored => reflected(place, mirror_axis(&drawings[pose].outline)),
+    }
+}
+
+/// The parameters of an outline landmark.
+fn snapped(
+    scene: &Scene,
+    landmark: &str,
+    line: usize,
+    found: &[Option<Found>],
+) -> Result<Vec<Option<f64>>, PipelineError> {
+    for (pose, found) in found.iter().enumerate() {
+        if let Some(found) = found.as_ref().filter(|f| f.distance > LANDMARK_REACH * f.size) {
+            return Err(PipelineError::LandmarkOffOutline {
+                landmark: landmark.to_owned(),
+                line,
+                pose: scene.poses[pose].name.clone(),
+                distance: found.distance,
+                largest: LANDMARK_REACH * found.size,
+                x: found.place.x,
+                y: found.place.y,
+            });
+        }
+    }
+    Ok(found.iter().map(|found| found.as_ref().map(|f| f.parameter)).collect())
+}
+
+/// A landmark's place on one pose.
+struct Found {
+    place: Point,
+    /// Of the nearest point of the outline.
+    parameter: f64,
+    /// To that point, in source units.
+    distance: f64,
+    inside: bool,
+    /// The pose's diagonal.
+    size: f64,
+}
+
+impl Found {
+    fn new(scene: &Scene, drawings: &[Drawing], measured: &[ArcLength], pose: usize, place: Point) -> Self {
+        let place = as_used(scene, drawings, pose, place);
+        let (parameter, distance) = measured[pose].nearest(place);
+        let outline = &drawings[pose].outline;
+        Self {
+            place,
+            parameter,
+            distance,
+            inside: outline.contains(place),
+            size: point::diagonal(outline.outer().points()),
+        }
+    }
+
+    fn is_deep(&self) -> bool {
+        self.inside && self.distance > INTERIOR_DEPTH * self.size
+    }
+}
