@@ -1,6 +1,6 @@
 //! Coarse matches of two whole curves: which starts are worth a closer look, and how alike the curves are.
 
-use super::curve::Curve;
+use super::curve::{COARSE_WINDOWS, Curve, Samples};
 use super::elastic::{MismatchTable, Path};
 use super::feature::{SalientPoint, salient_points};
 use super::monotone::CyclicMap;
@@ -66,8 +66,16 @@ impl CoarseMatch {
 
 /// The best coarse matches of `first` to `second` with clearly different starts, cheapest first; at least one.
 pub(super) fn coarse_matches(first: &Form, second: &Form, samples: usize, most: usize) -> Vec<CoarseMatch> {
-    let (rows, columns) = (first.even_parameters(samples), second.even_parameters(samples));
-    let table = MismatchTable::new(&first.curve, rows, &second.curve, columns, Vec::new());
+    let rows = first.even_parameters(samples);
+    let first = Samples::new(&first.curve, rows.clone(), COARSE_WINDOWS);
+    coarse_matches_to(rows, &[first], second, most)
+}
+
+/// The same for several curves on common rows, which `rows` stand for.
+pub(super) fn coarse_matches_to(rows: Vec<f64>, first: &[Samples], second: &Form, most: usize) -> Vec<CoarseMatch> {
+    let samples = rows.len();
+    let columns = Samples::new(&second.curve, second.even_parameters(samples), COARSE_WINDOWS);
+    let table = MismatchTable::new(rows, first, columns, Vec::new());
     let apart = ((APART * samples as f64).round() as usize).max(1);
     distinct_minima(&path_from_each_start(&table), apart, most)
         .into_iter()

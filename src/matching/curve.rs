@@ -4,16 +4,28 @@ use crate::math::{Point, angle};
 use crate::outline::{ArcLength, Ring, RingError};
 
 /// Half-windows over which turning is measured, as fractions of the perimeter, with the weight each has in the match.
+pub(super) type Windows = &'static [(f64, f32)];
+
+/// Windows of the fine match.
 ///
 /// Fine detail is the signal: on silhouettes warped by known maps, smoothed outlines match worse. The longest window
 /// counts half; it is what holds a match in place when the outline is noisy.
-pub(super) const WINDOWS: [(f64, f32); 4] = [(0.003, 1.0), (0.006, 1.0), (0.012, 1.0), (0.025, 0.5)];
+pub(super) const FINE_WINDOWS: Windows = &[(0.003, 1.0), (0.006, 1.0), (0.012, 1.0), (0.025, 0.5)];
+
+/// Windows of the coarse match, which decides what corresponds to what. The long ones see whole limbs: of unlike drawings
+/// only those are alike.
+pub(super) const COARSE_WINDOWS: Windows = &[
+    (0.003, 1.0),
+    (0.006, 1.0),
+    (0.012, 1.0),
+    (0.025, 0.5),
+    (0.05, 1.0),
+    (0.1, 1.0),
+    (0.2, 1.0),
+];
 
 /// Even samples that stand in for the ring when positions are asked for: a twentieth of a percent of the perimeter.
 const FINE_SAMPLES: usize = 2048;
-
-/// The turning of a curve at a point, in radians, for each of [`WINDOWS`], times its weight.
-pub(super) type Turning = [f32; WINDOWS.len()];
 
 /// A closed curve of length 1 around the origin.
 #[derive(Debug, Clone)]
@@ -59,13 +71,11 @@ impl Curve {
         a + (b - a) * along
     }
 
-    /// The turning at parameter `t`: the angle between the chords to the points a window behind and ahead.
-    pub(super) fn turning(&self, t: f64) -> Turning {
-        let here = self.arc.at(t);
-        WINDOWS.map(|(window, weight)| {
-            let (behind, ahead) = (self.arc.at(t - window), self.arc.at(t + window));
-            weight * angle::between(here - behind, ahead - here) as f32
-        })
+    /// The turning at parameter `t` over a half-window: the angle between the chords to the points that far behind and
+    /// ahead, in radians.
+    pub(super) fn turning_rad(&self, t: f64, window: f64) -> f64 {
+        let (here, behind, ahead) = (self.arc.at(t), self.arc.at(t - window), self.arc.at(t + window));
+        angle::between(here - behind, ahead - here)
     }
 
     /// The parameter, in `[t - reach, t + reach]`, of the point nearest to `p`; not wrapped.
@@ -88,6 +98,29 @@ impl Curve {
     }
 }
 
+/// A curve at some parameters: what a match compares.
+#[derive(Debug, Clone)]
+pub(super) struct Samples {
+    /// The parameters: increasing, not wrapped, less than one turn.
+    pub(super) parameters: Vec<f64>,
+    /// The turning at each of them in radians, times the window's weight: #windows x #parameters.
+    pub(super) turning: Vec<Vec<f32>>,
+}
+
+impl Samples {
+    /// Measures `curve` at `parameters`.
+    pub(super) fn new(curve: &Curve, parameters: Vec<f64>, windows: Windows) -> Self {
+        let over = |(window, weight): &(f64, f32)| {
+            let turning = |t: &f64| *weight * curve.turning_rad(*t, *window) as f32;
+            parameters.iter().map(turning).collect()
+        };
+        Self {
+            turning: windows.iter().map(over).collect(),
+            parameters,
+        }
+    }
+}
+
 /// The fine sample before `t`, and how far `t` is towards the next.
 fn fine_position(t: f64) -> (usize, f64) {
     let position = t.rem_euclid(1.0) * FINE_SAMPLES as f64;
@@ -104,8 +137,8 @@ mod tests {
         let ring = Ring::new([[5.0, 5.0], [9.0, 5.0], [9.0, 9.0], [5.0, 9.0]].map(Point::from)).expect("a ring");
         let curve = Curve::new(&ring).expect("a curve");
         assert!((curve.at(0.0) - Point::new(-0.125, -0.125)).norm() < 1e-12);
-        assert!((curve.turning(0.25)[0] - std::f32::consts::FRAC_PI_2).abs() < 1e-5);
-        assert!(curve.turning(0.125)[0].abs() < 1e-6);
+        assert!((curve.turning_rad(0.25, 0.003) - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
+        assert!(curve.turning_rad(0.125, 0.003).abs() < 1e-9);
         assert!((curve.nearest_within(Point::new(0.05, -0.3), 0.1, 0.2) - 0.175).abs() < 1e-9);
         assert_eq!(curve.nearest_within(Point::new(0.3, -0.3), 0.1, 0.05), 0.1 + 0.05);
     }

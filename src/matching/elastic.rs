@@ -3,19 +3,23 @@
 //! Source: Sebastian, Klein and Kimia 2003, "On aligning curves": a match is a monotone path through the table of all
 //! pairs of samples, and costs the difference in length and the difference in turning along it. Here:
 //!
-//! - the cost of a step is `|ds1 - ds2| + TURNING_COST * |turning1 - turning2| * (ds1 + ds2) / 2`, summed over the windows
-//!   of [`super::curve::WINDOWS`], with lengths in perimeters and turning in radians;
+//! - the cost of a step is `|ds1 - ds2| * (EVEN_STRETCH + |ds1 - ds2| / (ds1 + ds2)) + TURNING_COST * |turning1 - turning2| *
+//!   (ds1 + ds2) / 2`, summed over the windows
+//!   of [`super::curve::FINE_WINDOWS`] or [`super::curve::COARSE_WINDOWS`], with lengths in perimeters and turning in radians;
 //! - *difference from the source*: steps are taken from a fixed list of slopes between 1/4 and 4, not from all pairs of
 //!   earlier samples, so that a table of n x n samples costs O(n^2) and no slope degenerates.
 //!
 //! The samples need not be even: with landmarks, each arc between two of them is sampled with equal counts on both
 //! curves, and the path is made to pass through every landmark.
 
-use super::curve::{Curve, Turning};
+use super::curve::{Curve, Samples};
 use crate::math::Point;
 
 /// Cost of a radian of difference in turning along one perimeter, relative to a stretch by one perimeter.
 const TURNING_COST: f32 = 2.5;
+/// Share of the stretch that costs the same however it is spread. The rest grows with its square, so that a long straight
+/// arc is not left as it is in one half and torn in the other.
+const EVEN_STRETCH: f32 = 0.5;
 /// Steps `(rows, columns)` of a path. Their ratios are the slopes that a match can have locally.
 const STEPS: [(usize, usize); 9] = [(1, 1), (1, 2), (2, 1), (2, 3), (3, 2), (1, 3), (3, 1), (1, 4), (4, 1)];
 /// The largest ratio in [`STEPS`].
@@ -37,25 +41,34 @@ pub(super) struct MismatchTable {
 }
 
 impl MismatchTable {
-    /// Compares `first` at `rows` with `second` at `columns`. The rows in `forced`, increasing and without row 0, have to
-    /// be matched to the column of the same number.
-    pub(super) fn new(first: &Curve, rows: Vec<f64>, second: &Curve, columns: Vec<f64>, forced: Vec<usize>) -> Self {
-        let row_turning: Vec<Turning> = rows.iter().map(|t| first.turning(*t)).collect();
-        let column_turning: Vec<Turning> = columns.iter().map(|t| second.turning(*t)).collect();
-        let mut values = Vec::with_capacity(TURNS * rows.len() * columns.len());
-        for a in &row_turning {
+    /// Compares the curves of `first`, which have common rows, with `second`; the mismatch is the mean over those curves.
+    /// `rows` are the parameters that stand for theirs. The rows in `forced`, increasing and without row 0, have to be
+    /// matched to the column of the same number.
+    pub(super) fn new(rows: Vec<f64>, first: &[Samples], second: Samples, forced: Vec<usize>) -> Self {
+        let columns = second.parameters.len();
+        let scale = TURNING_COST / first.len() as f32;
+        let mut values = Vec::with_capacity(TURNS * rows.len() * columns);
+        for row in 0..rows.len() {
             let begin = values.len();
-            for b in &column_turning {
-                let difference: f32 = a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum();
-                values.push(TURNING_COST * difference);
+            values.resize(begin + columns, 0.0);
+            for curve in first {
+                for (own, others) in curve.turning.iter().zip(&second.turning) {
+                    let own = own[row];
+                    for (value, other) in values[begin..].iter_mut().zip(others) {
+                        *value += (own - other).abs();
+                    }
+                }
+            }
+            for value in &mut values[begin..] {
+                *value *= scale;
             }
             for _ in 1..TURNS {
-                values.extend_from_within(begin..begin + columns.len());
+                values.extend_from_within(begin..begin + columns);
             }
         }
         Self {
             rows,
-            columns,
+            columns: second.parameters,
             values,
             forced,
         }
@@ -269,7 +282,8 @@ fn try_step<const N: usize>(
     let mismatches = mismatches.map(|slice| &slice[..count]);
     for k in 0..count {
         let mismatch: f32 = mismatches.iter().map(|slice| slice[k]).sum();
-        let sum = before[k] + mismatch * share * (ds1 + ds2[k]) + (ds1 - ds2[k]).abs();
+        let (both, stretch) = (ds1 + ds2[k], (ds1 - ds2[k]).abs());
+        let sum = before[k] + mismatch * share * both + stretch * (EVEN_STRETCH + stretch / both);
         let better = sum < costs[k];
         costs[k] = if better { sum } else { costs[k] };
         chosen[k] = if better { step } else { chosen[k] };
@@ -278,7 +292,8 @@ fn try_step<const N: usize>(
 
 /// The cost of a step over which the weighted turning differs by `turning_rad` and the lengths are `ds1` and `ds2`.
 pub(super) fn step_cost(turning_rad: f64, ds1: f64, ds2: f64) -> f64 {
-    f64::from(TURNING_COST) * turning_rad * 0.5 * (ds1 + ds2) + (ds1 - ds2).abs()
+    let (both, stretch) = (ds1 + ds2, (ds1 - ds2).abs());
+    f64::from(TURNING_COST) * turning_rad * 0.5 * both + stretch * (f64::from(EVEN_STRETCH) + stretch / both)
 }
 
 /// Entry `[a][k]`: the length of the step of `a` samples that ends at sample `k`, for some turns of samples.

@@ -14,6 +14,7 @@ mod curve;
 mod elastic;
 mod error;
 mod feature;
+mod frame;
 mod landmark;
 mod monotone;
 mod n_way;

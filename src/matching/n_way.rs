@@ -6,18 +6,21 @@
 //! 2. Choose the reference, unless told: the first pose, or the one with clearly the least sum of coarse matching costs.
 //! 3. A landmark that the reference lacks is carried there from the poses that have it, one landmark after the other.
 //! 4. Match every pose to the reference (module `pair`), in parallel.
+//! 5. With three poses and more, match each again to all others at once ([`match_jointly`]): what the reference does not
+//!    show, or shows in a posture of its own, the others may.
 //!
-//! *Differences from the paper*: NWM matches pairs from a first point that the user gives; here the start is found, and
-//! landmarks hold for all N poses at once, a pose may lack some, and they are met exactly.
+//! *Differences from the paper*: NWM matches pairs to a base pose from a first point that the user gives; here the start is
+//! found, all N have a say, and landmarks hold for all poses at once, a pose may lack some, and they are met exactly.
 //!
-//! Cost: O(N) matches, and O(N^2) coarse ones to choose the reference.
+//! Cost: O(N) matches, each comparing with up to N - 1 curves, and O(N^2) coarse ones to choose the reference.
 
 use rayon::prelude::*;
 
 use super::coarse::{Form, coarse_matches};
+use super::frame::{Frame, Model};
 use super::landmark::{Landmark, validated};
 use super::monotone::CyclicMap;
-use super::pair::{PairMatch, Pin, Reference};
+use super::pair::{PairMatch, Pin, match_pose};
 use super::{Correspondence, MatchError, SalientPoint};
 use crate::math::Point;
 use crate::math::point::cross;
@@ -36,6 +39,9 @@ const CENTRAL_MARGIN: f32 = 0.8;
 const MIRROR_COST_MARGIN: f32 = 1.05;
 /// A pose looks mirrored if its reflection is nearer to the reference by this factor.
 const MIRROR_MARGIN: f64 = 0.7;
+
+/// Rounds in which every pose is matched again. After three, hardly any changes what it corresponds to.
+const JOINT_ROUNDS: usize = 3;
 
 /// How outlines are matched.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -78,7 +84,8 @@ pub struct MatchReport {
 /// How one pose was matched.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseMatch {
-    /// The elastic cost of its match to the reference: difference in turning (rad, times 2.5 a perimeter) and stretch.
+    /// The elastic cost of its match to the other poses, in the mean: difference in turning (rad, times 2.5 a perimeter) and
+    /// stretch. Of two poses, to the reference; 0 for the reference itself.
     pub cost: f64,
     /// The same by row of the correspondence, as a density: a match is doubtful where it is high.
     pub mismatch: Vec<f64>,
@@ -300,34 +307,85 @@ fn match_some(
 ) -> Result<Matches, MatchError> {
     let mut placed: Vec<f64> = landmarks.iter().filter_map(|l| l.at[reference]).collect();
     placed.sort_by(f64::total_cmp);
-    let frame = Reference::new(&forms[reference], &placed);
-    let matches = (0..forms.len())
+    let frame = Frame::new(&forms[reference], &placed);
+    let pins: Vec<Vec<Pin>> = (0..forms.len())
+        .map(|pose| pins(&frame, reference, landmarks, pose))
+        .collect();
+    let model = Model::new(vec![(&forms[reference], &frame.rows)]);
+    let mut matches = (0..forms.len())
         .into_par_iter()
         .map(|pose| {
             if pose == reference || !wanted.contains(&pose) {
                 return Ok(None);
             }
-            let mut pins: Vec<Pin> = landmarks
-                .iter()
-                .filter_map(|l| {
-                    let (at_reference, parameter) = (l.at[reference]?, l.at[pose]?);
-                    let row = frame.row_of(at_reference)?;
-                    Some(Pin { row, parameter })
-                })
-                .collect();
-            pins.sort_by_key(|pin| pin.row);
-            let mut matched = frame
-                .match_pose(&forms[pose], &pins)
-                .ok_or(MatchError::NoMatch { pose })?;
-            for pin in &pins {
-                // Exactly as given, not as rounded on the way.
-                let turns = (matched.parameters[pin.row] - pin.parameter).round();
-                matched.parameters[pin.row] = pin.parameter + turns;
-            }
-            Ok(Some(matched))
+            pinned_match(&frame, &model, &forms[pose], &pins[pose], None)
+                .ok_or(MatchError::NoMatch { pose })
+                .map(Some)
         })
         .collect::<Result<Vec<_>, MatchError>>()?;
+    match_jointly(forms, reference, &frame, &pins, &mut matches);
     Ok((frame.rows, matches))
+}
+
+/// Matches every pose again to all others as they stand, the reference among them, the worst matched first. One after the
+/// other: of two poses that disagree, only one has to move.
+fn match_jointly(
+    forms: &[Form],
+    reference: usize,
+    frame: &Frame,
+    pins: &[Vec<Pin>],
+    matches: &mut [Option<PairMatch>],
+) {
+    let mut order: Vec<(f64, usize)> = matches
+        .iter()
+        .enumerate()
+        .filter_map(|(pose, matched)| Some((matched.as_ref()?.cost, pose)))
+        .collect();
+    if order.len() < 2 {
+        return;
+    }
+    order.sort_by(|a, b| b.0.total_cmp(&a.0));
+    for _ in 0..JOINT_ROUNDS {
+        for &(_, pose) in &order {
+            let others = (0..forms.len()).filter(|other| *other != pose).filter_map(|other| {
+                let parameters = match &matches[other] {
+                    Some(matched) => &matched.parameters,
+                    None if other == reference => &frame.rows,
+                    None => return None,
+                };
+                Some((&forms[other], &parameters[..]))
+            });
+            let model = Model::new(others.collect());
+            let current = matches[pose].as_ref().map(|matched| &matched.parameters[..]);
+            if let Some(again) = pinned_match(frame, &model, &forms[pose], &pins[pose], current) {
+                matches[pose] = Some(again);
+            }
+        }
+    }
+}
+
+/// The rows that landmarks of the reference set on a pose, in order.
+fn pins(frame: &Frame, reference: usize, landmarks: &[Landmark], pose: usize) -> Vec<Pin> {
+    let mut pins: Vec<Pin> = landmarks
+        .iter()
+        .filter_map(|l| {
+            let (at_reference, parameter) = (l.at[reference]?, l.at[pose]?);
+            let row = frame.row_of(at_reference)?;
+            Some(Pin { row, parameter })
+        })
+        .collect();
+    pins.sort_by_key(|pin| pin.row);
+    pins
+}
+
+/// A match that goes through the pins exactly as given, not as rounded on the way.
+fn pinned_match(frame: &Frame, model: &Model, form: &Form, pins: &[Pin], current: Option<&[f64]>) -> Option<PairMatch> {
+    let mut matched = match_pose(frame, model, form, pins, current)?;
+    for pin in pins {
+        let turns = (matched.parameters[pin.row] - pin.parameter).round();
+        matched.parameters[pin.row] = pin.parameter + turns;
+    }
+    Some(matched)
 }
 
 #[cfg(test)]

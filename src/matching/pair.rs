@@ -1,6 +1,7 @@
-//! The match of one pose to the reference.
+//! The match of one pose to a model: the reference, or all other poses on common rows.
 //!
-//! 1. *Start*: coarse matches give a few candidate starts; landmarks shared by both settle the start instead.
+//! 1. *Start*: coarse matches give a few candidate starts, to which comes the match so far, if there is one; landmarks
+//!    settle the start instead.
 //! 2. *Elastic*: around each candidate, the elastic match on finer samples.
 //! 3. *Guided*: a stiff thin-plate spline through that match says where each point should be if the interior moved
 //!    smoothly; the elastic match is made once more, drawn to those places. The candidate that is cheapest now is kept.
@@ -10,14 +11,15 @@
 //!
 //! Step 4 is worth a factor of three in the median error on silhouettes warped by known maps.
 
-use super::coarse::{CoarseMatch, Form, coarse_matches};
+use super::coarse::{CoarseMatch, Form, coarse_matches_to};
+use super::curve::{COARSE_WINDOWS, FINE_WINDOWS, Samples};
 use super::elastic::{Band, MismatchTable, cheapest_path, step_cost};
+use super::frame::{CONTROL_STRIDE, Frame, Model, STIFFNESSES};
 use super::monotone::{CyclicMap, limit_steps, make_increasing};
-use super::thin_plate::ThinPlate;
 use crate::math::{Point, angle};
 
-/// Samples of the coarse match.
-const COARSE_SAMPLES: usize = 96;
+/// Rows between two samples of the coarse match: about a hundred samples.
+const COARSE_STRIDE: usize = 5;
 /// How many starts get a closer look.
 const CANDIDATES: usize = 4;
 /// Candidates whose fine cost exceeds the best by more than this factor are not guided.
@@ -25,12 +27,8 @@ const CANDIDATE_MARGIN: f32 = 1.25;
 /// Guided costs within this factor and this difference count as a tie, which the smaller rotation decides: what even
 /// sampling leaves between equal arms of a symmetric shape. Unlike shapes cost 0.5 and more.
 const TIE_MARGIN: (f32, f32) = (1.003, 0.01);
-/// Rows of a match; the elastic match uses every second, the splines every fourth.
-const ROWS: usize = 512;
 /// Rows between two samples of the elastic match.
 const ELASTIC_STRIDE: usize = 2;
-/// Rows between two control points of a spline.
-pub(super) const CONTROL_STRIDE: usize = 4;
 /// How far the fine match may leave the coarse one, in perimeters.
 const COARSE_REACH: f64 = 0.06;
 /// How far the fine start is tried around the coarse one, in columns.
@@ -39,25 +37,14 @@ const START_REACH: usize = 4;
 const GUIDED_REACH: f64 = 0.05;
 /// Cost of a point's distance from where the spline expects it, in perimeters, relative to stretch.
 const DISTANCE_COST: f32 = 30.0;
-/// Stiffness of the splines, with lengths in perimeters; the first guides, the others refit.
-const STIFFNESSES: [f64; 5] = [1e-3, 1e-3, 3e-4, 1e-4, 1e-5];
 /// Refits with each stiffness.
 const REFITS: usize = 6;
 /// How far a point may move in the first refit, in perimeters; in later ones less.
-const REFIT_REACH: f64 = 0.02;
+const REFIT_REACH: f64 = 0.01;
 /// Least and largest slope of a match: beyond, the outline would collapse or tear.
 const SLOPES: (f64, f64) = (1.0 / 20.0, 20.0);
 
-/// The reference curve with everything that does not depend on the other pose.
-#[derive(Debug)]
-pub(super) struct Reference<'a> {
-    form: &'a Form,
-    /// Parameters of the rows: increasing, not wrapped.
-    pub(super) rows: Vec<f64>,
-    plate: ThinPlate,
-}
-
-/// A row of the reference that a landmark sets to a parameter of the pose.
+/// A row that a landmark sets to a parameter of the pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Pin {
     /// Which row; a multiple of [`CONTROL_STRIDE`].
@@ -66,93 +53,81 @@ pub(super) struct Pin {
     pub(super) parameter: f64,
 }
 
-/// A pose's parameter for every row of the reference.
+/// A pose's parameter for every row.
 #[derive(Debug, Clone)]
 pub(super) struct PairMatch {
     /// By row: increasing, not wrapped, less than one turn.
     pub(super) parameters: Vec<f64>,
-    /// By row: the difference in turning and stretch, as a cost per unit length.
+    /// By row: the difference in turning and stretch from the model, as a cost per unit length.
     pub(super) mismatch: Vec<f64>,
     /// The elastic cost of the whole.
     pub(super) cost: f64,
 }
 
-impl<'a> Reference<'a> {
-    /// Prepares `form`, with a row at each of `landmarks` (parameters in increasing order, distinct).
-    pub(super) fn new(form: &'a Form, landmarks: &[f64]) -> Self {
-        let rows = if landmarks.is_empty() {
-            form.even_parameters(ROWS)
-        } else {
-            rows_through(landmarks)
-        };
-        let places: Vec<Point> = rows.iter().map(|t| form.curve.at(*t)).collect();
-        let controls: Vec<Point> = places.iter().copied().step_by(CONTROL_STRIDE).collect();
-        let plate = ThinPlate::new(&controls, &places, &STIFFNESSES);
-        Self { form, rows, plate }
-    }
-
-    /// The row of the landmark at parameter `t`, which was given to [`Self::new`].
-    pub(super) fn row_of(&self, t: f64) -> Option<usize> {
-        self.rows
-            .iter()
-            .step_by(CONTROL_STRIDE)
-            .position(|row| *row == t)
-            .map(|index| index * CONTROL_STRIDE)
-    }
-
-    /// Matches `pose`. `pins` are in order of their rows, and their parameters in cyclic order.
-    pub(super) fn match_pose(&self, pose: &Form, pins: &[Pin]) -> Option<PairMatch> {
-        let mut candidates = if pins.is_empty() {
-            self.candidates(pose)
-        } else {
-            vec![self.through_pins(pose, pins)?]
-        };
-        let least = candidates.iter().map(|c| c.cost).fold(f32::INFINITY, f32::min);
-        candidates.retain(|c| c.cost <= CANDIDATE_MARGIN * least);
-        let guided: Vec<CoarseMatch> = candidates
-            .into_iter()
-            .map(|candidate| self.guided(pose, pins, candidate))
-            .collect();
-        let chosen = self.choose(pose, guided)?;
-        let parameters = self.refit(pose, pins, &chosen.map);
-        Some(self.measured(pose, parameters))
-    }
-
-    /// Fine matches around the best coarse ones.
-    fn candidates(&self, pose: &Form) -> Vec<CoarseMatch> {
-        let coarse = coarse_matches(self.form, pose, COARSE_SAMPLES, CANDIDATES);
-        let rows: Vec<f64> = self.rows.iter().copied().step_by(ELASTIC_STRIDE).collect();
-        let columns = pose.even_parameters(rows.len());
-        let table = MismatchTable::new(&self.form.curve, rows, &pose.curve, columns, Vec::new());
-        coarse
-            .into_iter()
-            .map(|candidate| {
-                let band = band_around(&table, &candidate.map, COARSE_REACH);
-                let start = (band[0].0 + band[0].1) / 2;
-                (start.saturating_sub(START_REACH)..=start + START_REACH)
-                    .filter_map(|start| cheapest_path(&table, start, &band))
-                    .reduce(|a, b| if b.cost < a.cost { b } else { a })
-                    .map_or(candidate, |path| CoarseMatch::from_path(&table, &path))
-            })
-            .collect()
-    }
-
-    /// The match through all pins: each arc between two pins is sampled with equal counts on both curves.
-    fn through_pins(&self, pose: &Form, pins: &[Pin]) -> Option<CoarseMatch> {
-        let table = self.pinned_table(pose, pins);
+/// Matches `pose` to `model`, whose rows are those of `frame`. `pins` are in order of their rows, and their parameters in
+/// cyclic order; `current` is a match to improve.
+pub(super) fn match_pose(
+    frame: &Frame,
+    model: &Model,
+    pose: &Form,
+    pins: &[Pin],
+    current: Option<&[f64]>,
+) -> Option<PairMatch> {
+    let task = Task {
+        frame,
+        model,
+        pose,
+        pins,
+    };
+    let table = task.table();
+    let mut candidates = if pins.is_empty() {
+        task.candidates(&table, current)
+    } else {
         let path = cheapest_path(&table, 0, &table.reachable(0))?;
-        Some(CoarseMatch::from_path(&table, &path))
+        vec![CoarseMatch::from_path(&table, &path)]
+    };
+    let least = candidates.iter().map(|c| c.cost).fold(f32::INFINITY, f32::min);
+    candidates.retain(|c| c.cost <= CANDIDATE_MARGIN * least);
+    let guided: Vec<CoarseMatch> = candidates
+        .into_iter()
+        .map(|candidate| task.guided(&table, candidate))
+        .collect();
+    let chosen = task.choose(guided)?;
+    Some(task.measured(task.refit(&chosen.map)))
+}
+
+/// One pose, what it is compared with, and the landmarks it has to go through.
+struct Task<'a> {
+    frame: &'a Frame,
+    model: &'a Model<'a>,
+    pose: &'a Form,
+    pins: &'a [Pin],
+}
+
+impl Task<'_> {
+    /// The table of the fine match. With pins it begins at the first, and each arc between two of them is sampled with
+    /// equal counts on the model and the pose.
+    fn table(&self) -> MismatchTable {
+        let first_row = self.pins.first().map_or(0, |pin| pin.row);
+        let (rows, curves) = self.model.samples(first_row, ELASTIC_STRIDE, FINE_WINDOWS);
+        let columns = match self.pins {
+            [] => self.pose.even_parameters(rows.len()),
+            _ => self.pinned_columns().into_iter().step_by(ELASTIC_STRIDE).collect(),
+        };
+        let forced = self.pins.iter().skip(1);
+        let forced = forced.map(|pin| (pin.row - first_row) / ELASTIC_STRIDE).collect();
+        let columns = Samples::new(&self.pose.curve, columns, FINE_WINDOWS);
+        MismatchTable::new(rows, &curves, columns, forced)
     }
 
-    fn pinned_table(&self, pose: &Form, pins: &[Pin]) -> MismatchTable {
-        let first_row = pins[0].row;
-        let count = self.rows.len();
-        let row_at = |k: usize| self.rows[(first_row + k) % count] + ((first_row + k) / count) as f64;
+    /// By row from the first pin's on, the parameter of the pose in even steps between pins.
+    fn pinned_columns(&self) -> Vec<f64> {
+        let (pins, count) = (self.pins, self.frame.rows.len());
         let mut columns = vec![0.0; count];
         for (index, pin) in pins.iter().enumerate() {
-            let begin = pin.row - first_row;
+            let begin = pin.row - pins[0].row;
             let (end, closing) = match pins.get(index + 1) {
-                Some(next) => (next.row - first_row, next.parameter),
+                Some(next) => (next.row - pins[0].row, next.parameter),
                 None => (count, pins[0].parameter),
             };
             // One pin alone spans the whole turn.
@@ -163,126 +138,141 @@ impl<'a> Reference<'a> {
                 *column = base + gap * (k - begin) as f64 / (end - begin) as f64;
             }
         }
-        let every_second = |values: Vec<f64>| values.into_iter().step_by(ELASTIC_STRIDE).collect::<Vec<f64>>();
-        let rows = every_second((0..count).map(row_at).collect());
-        let forced = pins[1..]
-            .iter()
-            .map(|pin| (pin.row - first_row) / ELASTIC_STRIDE)
-            .collect();
-        MismatchTable::new(&self.form.curve, rows, &pose.curve, every_second(columns), forced)
+        columns
+    }
+
+    /// Fine matches around the best coarse ones and around the current one.
+    fn candidates(&self, table: &MismatchTable, current: Option<&[f64]>) -> Vec<CoarseMatch> {
+        let (rows, curves) = self.model.samples(0, COARSE_STRIDE, COARSE_WINDOWS);
+        let mut coarse = coarse_matches_to(rows, &curves, self.pose, CANDIDATES);
+        coarse.extend(current.map(|parameters| CoarseMatch {
+            map: CyclicMap::through(self.model.rows.clone(), parameters.to_vec()),
+            cost: f32::INFINITY,
+        }));
+        coarse
+            .into_iter()
+            .map(|candidate| {
+                let band = band_around(table, &candidate.map, COARSE_REACH);
+                best_path(table, &band, START_REACH).unwrap_or(candidate)
+            })
+            .collect()
     }
 
     /// The elastic match again, drawn to where a stiff spline through `candidate` takes the reference.
-    fn guided(&self, pose: &Form, pins: &[Pin], candidate: CoarseMatch) -> CoarseMatch {
-        let current: Vec<f64> = self.rows.iter().map(|t| candidate.map.at(*t)).collect();
-        let Some(expected) = self.carried(pose, 0, &current) else {
+    fn guided(&self, table: &MismatchTable, candidate: CoarseMatch) -> CoarseMatch {
+        let current: Vec<f64> = self.model.rows.iter().map(|t| candidate.map.at(*t)).collect();
+        let Some(expected) = self.carried(0, &current) else {
             return candidate;
         };
-        let first_row = pins.first().map_or(0, |pin| pin.row);
-        let expected: Vec<Point> = (0..self.rows.len())
+        let (count, first_row) = (expected.len(), self.pins.first().map_or(0, |pin| pin.row));
+        let expected: Vec<Point> = (0..count)
             .step_by(ELASTIC_STRIDE)
-            .map(|k| expected[(first_row + k) % self.rows.len()])
+            .map(|k| expected[(first_row + k) % count])
             .collect();
-        let (table, starts) = if pins.is_empty() {
-            let rows: Vec<f64> = self.rows.iter().copied().step_by(ELASTIC_STRIDE).collect();
-            let columns = pose.even_parameters(rows.len());
-            let table = MismatchTable::new(&self.form.curve, rows, &pose.curve, columns, Vec::new());
-            (table, START_REACH)
+        let table = table.clone().drawn_to(&expected, &self.pose.curve, DISTANCE_COST);
+        let path = if self.pins.is_empty() {
+            best_path(&table, &band_around(&table, &candidate.map, GUIDED_REACH), START_REACH)
         } else {
-            (self.pinned_table(pose, pins), 0)
+            let path = cheapest_path(&table, 0, &table.reachable(0));
+            path.map(|path| CoarseMatch::from_path(&table, &path))
         };
-        let table = table.drawn_to(&expected, &pose.curve, DISTANCE_COST);
-        let band = if pins.is_empty() {
-            band_around(&table, &candidate.map, GUIDED_REACH)
-        } else {
-            table.reachable(0)
-        };
-        let middle = if pins.is_empty() {
-            (band[0].0 + band[0].1) / 2
-        } else {
-            0
-        };
-        (middle.saturating_sub(starts)..=middle + starts)
-            .filter_map(|start| cheapest_path(&table, start, &band))
-            .reduce(|a, b| if b.cost < a.cost { b } else { a })
-            .map_or(candidate, |path| CoarseMatch::from_path(&table, &path))
+        path.unwrap_or(candidate)
     }
 
     /// The cheapest match; among those that cost nearly the same, the one that turns the drawing least.
     ///
     /// Only a shape with rotational symmetry has such ties, so that turning a drawing changes nothing for any other.
-    fn choose(&self, pose: &Form, candidates: Vec<CoarseMatch>) -> Option<CoarseMatch> {
+    fn choose(&self, candidates: Vec<CoarseMatch>) -> Option<CoarseMatch> {
         let least = candidates.iter().map(|c| c.cost).fold(f32::INFINITY, f32::min);
         candidates
             .into_iter()
             .filter(|c| c.cost <= TIE_MARGIN.0 * least + TIE_MARGIN.1)
-            .min_by(|a, b| self.rotation(pose, a).total_cmp(&self.rotation(pose, b)))
+            .min_by(|a, b| self.rotation(a).total_cmp(&self.rotation(b)))
     }
 
-    /// The absolute angle of the best-fitting rotation of the match, in radians.
-    fn rotation(&self, pose: &Form, candidate: &CoarseMatch) -> f64 {
+    /// The absolute angle of the best-fitting rotation of the match from the model's first curve, in radians.
+    fn rotation(&self, candidate: &CoarseMatch) -> f64 {
         let mut sum = Point::zeros();
-        for t in self.rows.iter().step_by(CONTROL_STRIDE) {
-            let (a, b) = (self.form.curve.at(*t), pose.curve.at(candidate.map.at(*t)));
-            sum += Point::new(a.dot(&b), crate::math::point::cross(a, b));
+        if let Some((form, parameters)) = self.model.curves.first() {
+            for (t, row) in parameters.iter().zip(&self.model.rows).step_by(CONTROL_STRIDE) {
+                let (a, b) = (form.curve.at(*t), self.pose.curve.at(candidate.map.at(*row)));
+                sum += Point::new(a.dot(&b), crate::math::point::cross(a, b));
+            }
         }
         angle::between(Point::new(1.0, 0.0), sum).abs()
     }
 
     /// Where the spline number `level` through the current match takes each row's point.
-    fn carried(&self, pose: &Form, level: usize, parameters: &[f64]) -> Option<Vec<Point>> {
+    fn carried(&self, level: usize, parameters: &[f64]) -> Option<Vec<Point>> {
         let targets: Vec<Point> = parameters
             .iter()
             .step_by(CONTROL_STRIDE)
-            .map(|t| pose.curve.at(*t))
+            .map(|t| self.pose.curve.at(*t))
             .collect();
-        self.plate.carry(level, &targets)
+        self.frame.plate.carry(level, &targets)
     }
 
-    fn refit(&self, pose: &Form, pins: &[Pin], map: &CyclicMap) -> Vec<f64> {
-        let count = self.rows.len();
-        let mut parameters: Vec<f64> = self.rows.iter().map(|t| map.at(*t)).collect();
+    fn refit(&self, map: &CyclicMap) -> Vec<f64> {
+        let count = self.frame.rows.len();
+        let mut parameters: Vec<f64> = self.model.rows.iter().map(|t| map.at(*t)).collect();
         let least_step = SLOPES.0 / count as f64;
         for level in 1..STIFFNESSES.len() {
             for _ in 0..REFITS {
-                let Some(expected) = self.carried(pose, level, &parameters) else {
+                let Some(expected) = self.carried(level, &parameters) else {
                     break;
                 };
                 for (t, p) in parameters.iter_mut().zip(expected) {
-                    *t = pose.curve.nearest_within(p, *t, REFIT_REACH / level as f64);
+                    *t = self.pose.curve.nearest_within(p, *t, REFIT_REACH / level as f64);
                 }
-                settle(&mut parameters, pins, |values, pinned| {
+                settle(&mut parameters, self.pins, |values, pinned| {
                     make_increasing(values, pinned, least_step)
                 });
             }
         }
-        settle(&mut parameters, pins, |values, pinned| {
+        settle(&mut parameters, self.pins, |values, pinned| {
             limit_steps(values, pinned, SLOPES.1 / count as f64);
         });
         parameters
     }
 
-    fn measured(&self, pose: &Form, parameters: Vec<f64>) -> PairMatch {
-        let count = self.rows.len();
-        let table = |k: usize| (self.form.curve.turning(self.rows[k]), pose.curve.turning(parameters[k]));
+    fn measured(&self, parameters: Vec<f64>) -> PairMatch {
+        let count = parameters.len();
+        let own = Samples::new(&self.pose.curve, parameters, FINE_WINDOWS);
+        let (_, curves) = self.model.samples(0, 1, FINE_WINDOWS);
+        let step = |t: &[f64], k: usize| {
+            if k + 1 == count {
+                t[0] + 1.0 - t[k]
+            } else {
+                t[k + 1] - t[k]
+            }
+        };
         let mut cost = 0.0;
-        let mut mismatch = Vec::with_capacity(count);
-        for k in 0..count {
-            let (next, turn) = if k + 1 == count { (0, 1.0) } else { (k + 1, 0.0) };
-            let ds1 = self.rows[next] + turn - self.rows[k];
-            let ds2 = parameters[next] + turn - parameters[k];
-            let (a, b) = table(k);
-            let turning: f64 = a.iter().zip(b).map(|(a, b)| f64::from((a - b).abs())).sum();
-            let own = step_cost(turning, ds1, ds2);
-            mismatch.push(own / (0.5 * (ds1 + ds2)));
-            cost += own;
+        let mut mismatch = vec![0.0; count];
+        for curve in &curves {
+            for (k, density) in mismatch.iter_mut().enumerate() {
+                let (ds1, ds2) = (step(&curve.parameters, k), step(&own.parameters, k));
+                let windows = curve.turning.iter().zip(&own.turning);
+                let turning: f64 = windows.map(|(a, b)| f64::from((a[k] - b[k]).abs())).sum();
+                let part = step_cost(turning, ds1, ds2) / curves.len() as f64;
+                *density += part / (0.5 * (ds1 + ds2));
+                cost += part;
+            }
         }
         PairMatch {
-            parameters,
+            parameters: own.parameters,
             mismatch,
             cost,
         }
     }
+}
+
+/// The cheapest match within a band, starting within `reach` columns of the middle of its first row.
+fn best_path(table: &MismatchTable, band: &[(usize, usize)], reach: usize) -> Option<CoarseMatch> {
+    let middle = (band[0].0 + band[0].1) / 2;
+    (middle.saturating_sub(reach)..=middle + reach)
+        .filter_map(|start| cheapest_path(table, start, band))
+        .reduce(|a, b| if b.cost < a.cost { b } else { a })
+        .map(|path| CoarseMatch::from_path(table, &path))
 }
 
 /// Runs `change` on the parameters cut open at a pinned row, or, without pins, where they increase most freely.
@@ -323,22 +313,6 @@ fn settle(parameters: &mut [f64], pins: &[Pin], change: impl Fn(&mut [f64], &[us
         *t -= 1.0;
     }
     parameters.rotate_right(cut);
-}
-
-/// At least [`ROWS`] parameters with one at each landmark, every arc between two holding a multiple of
-/// [`CONTROL_STRIDE`].
-fn rows_through(landmarks: &[f64]) -> Vec<f64> {
-    let mut rows = Vec::with_capacity(ROWS + CONTROL_STRIDE * landmarks.len());
-    for (index, &begin) in landmarks.iter().enumerate() {
-        let end = match landmarks.get(index + 1) {
-            Some(next) => *next,
-            None => landmarks[0] + 1.0,
-        };
-        let share = (ROWS / CONTROL_STRIDE) as f64 * (end - begin);
-        let count = CONTROL_STRIDE * (share.ceil() as usize).max(1);
-        rows.extend((0..count).map(|k| begin + (end - begin) * k as f64 / count as f64));
-    }
-    rows
 }
 
 /// The columns within `reach` perimeters of `map`, moved ahead by whole turns until none is negative.

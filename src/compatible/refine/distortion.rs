@@ -1,7 +1,7 @@
 //! Least distortion between poses: interior vertices move so that every triangle is as similar as possible in all poses.
 //!
 //! In each pose the energy of a triangle with area a, mapped from its rest shape by the Jacobian J, is
-//! `rest area * (|J|^2 + |J^-1|^2) + SHAPE_WEIGHT * rest area * (mean ratio)^2`:
+//! `rest area * (|J|^2 + |J^-1|^2) + SHAPE_WEIGHT * sqrt(rest area * mean rest area) * (mean ratio)^4`:
 //! the symmetric Dirichlet energy, which is least where the triangle has its rest shape, and a shape term, without
 //! which triangles that are needles in every pose are left so. Both go to infinity as the triangle collapses.
 //!
@@ -16,9 +16,10 @@ use super::star::{self, Stars};
 use crate::math::{Matrix, Point, point};
 use crate::mesh::geometry;
 
-/// Weight of the squared mean ratio against the symmetric Dirichlet energy. Larger weights give rounder triangles and
+/// Weight of the mean ratio's fourth power against the symmetric Dirichlet energy. The power is what spreads a squeeze that
+/// only one pose has over the triangles around it; the root of the area gives small triangles more of a say. Larger weights give rounder triangles and
 /// more stretch between poses; at 0 triangles collapse.
-const SHAPE_WEIGHT: f64 = 0.6;
+const SHAPE_WEIGHT: f64 = 2.4;
 
 /// Halvings of a step before it is given up.
 const HALVINGS: usize = 6;
@@ -29,6 +30,7 @@ struct Rest {
     /// Inverse of the rest edge matrix whose columns run from the moving vertex to `a` and `b`.
     inverse: Matrix,
     area: f64,
+    shape_weight: f64,
 }
 
 /// Minimises the distortion of all poses, `sweeps` times over all vertices.
@@ -63,6 +65,8 @@ fn total_area(mesh: &EditableMesh, positions: &[Point]) -> f64 {
 
 /// The rest triangle of every entry of the stars, at total area 1.
 fn rest_shapes(mesh: &EditableMesh, stars: &Stars, areas: &[f64]) -> Vec<Rest> {
+    // The rest shapes have an area of about 1 together.
+    let mean_area = 1.0 / mesh.triangles().count().max(1) as f64;
     let mut rests = Vec::new();
     for (vertex, opposite) in stars.iter() {
         for &(a, b) in opposite {
@@ -84,6 +88,7 @@ fn rest_shapes(mesh: &EditableMesh, stars: &Stars, areas: &[f64]) -> Vec<Rest> {
             rests.push(Rest {
                 inverse,
                 area: 0.5 * double_area,
+                shape_weight: SHAPE_WEIGHT * (0.5 * double_area * mean_area).sqrt(),
             });
         }
     }
@@ -172,7 +177,7 @@ fn energy_at(positions: &[Point], p: Point, opposite: &[(usize, usize)], rests: 
             return None;
         }
         let ratio = l.edges / (EQUILATERAL * l.double_area);
-        energy += rest.area * (l.norm_squared * (1.0 + l.determinant.powi(-2)) + SHAPE_WEIGHT * ratio * ratio);
+        energy += rest.area * l.norm_squared * (1.0 + l.determinant.powi(-2)) + rest.shape_weight * ratio.powi(4);
     }
     energy.is_finite().then_some(energy)
 }
@@ -200,7 +205,7 @@ fn derivatives(
         let mixed = (outer(dq, dd) + outer(dd, dq)) * (-2.0 * inverse_square / d);
         let curved = outer(dd, dd) * (6.0 * q * inverse_square * inverse_square);
         hessian += (Matrix::identity() * (l.norm_hessian * (1.0 + inverse_square)) + mixed + curved) * rest.area;
-        // Shape: r^2 with r = e / (c a), e quadratic and a linear in p.
+        // Shape: r^4 with r = e / (c a), e quadratic and a linear in p.
         let r = l.edges / (EQUILATERAL * l.double_area);
         let dr = l.edges_gradient / (EQUILATERAL * l.double_area) - l.area_gradient * (r / l.double_area);
         let edges_hessian = Matrix::identity() * (4.0 / (scale * scale));
@@ -208,10 +213,9 @@ fn derivatives(
             - (outer(l.edges_gradient, l.area_gradient) + outer(l.area_gradient, l.edges_gradient))
                 / (EQUILATERAL * l.double_area * l.double_area)
             + outer(l.area_gradient, l.area_gradient) * (2.0 * r / (l.double_area * l.double_area));
-        let weight = SHAPE_WEIGHT * rest.area;
-        energy += weight * r * r;
-        gradient += dr * (2.0 * r * weight);
-        hessian += (outer(dr, dr) + ddr * r) * (2.0 * weight);
+        energy += rest.shape_weight * r.powi(4);
+        gradient += dr * (4.0 * r.powi(3) * rest.shape_weight);
+        hessian += (outer(dr, dr) * 3.0 + ddr * r) * (4.0 * r * r * rest.shape_weight);
     }
     energy.is_finite().then_some((energy, gradient, hessian))
 }
@@ -229,6 +233,7 @@ mod tests {
         let rest = Rest {
             inverse: Matrix::new(0.9, 0.1, -0.2, 1.1),
             area: 0.5 / (0.9 * 1.1 + 0.02),
+            shape_weight: 0.2,
         };
         (positions, opposite, vec![rest; 4])
     }

@@ -97,8 +97,8 @@ const SMALLEST_EDGE_LENGTH: f64 = 1e-3;
 /// Sweeps of angle-based smoothing after each round of splits.
 const SMOOTHING_SWEEPS: usize = 3;
 
-/// Sweeps of distortion minimisation, and how often flips come in between.
-const DISTORTION_SWEEPS: usize = 8;
+/// Sweeps of distortion minimisation at each length, and how often flips come in between at the last.
+const DISTORTION_SWEEPS: usize = 20;
 const DISTORTION_ROUNDS: usize = 3;
 
 /// Refines a compatible triangulation.
@@ -129,9 +129,13 @@ pub fn refine(mesh: &CompatibleMesh, options: &RefineOptions) -> Result<(Compati
         let stars = Stars::new(&work, &curves);
         smooth::smooth(&mut work, &stars, SMOOTHING_SWEEPS);
         flips += flip::flip(&mut work, &curves.paths);
+        // With few vertices, each sweep reaches far; the next level starts from what this one found.
+        let stars = Stars::new(&work, &curves);
+        distortion::minimise(&mut work, &stars, DISTORTION_SWEEPS);
+        flips += flip::flip(&mut work, &curves.paths);
         length *= 0.5;
     }
-    for _ in 0..DISTORTION_ROUNDS {
+    for _ in 1..DISTORTION_ROUNDS {
         let stars = Stars::new(&work, &curves);
         distortion::minimise(&mut work, &stars, DISTORTION_SWEEPS);
         flips += flip::flip(&mut work, &curves.paths);

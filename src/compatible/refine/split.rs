@@ -5,7 +5,11 @@ use std::collections::BTreeMap;
 use super::super::editable::{Curves, EditableMesh};
 use crate::math::Point;
 
-/// Splits edges whose length over the pose's diagonal, in the mean over the poses, exceeds `length`, longest first.
+/// Power of the mean over the poses: nearly the longest counts, since a limb that is short in most poses and long in one has
+/// to bend there too, but one pose among many does not set the size of all triangles.
+const LENGTH_POWER: i32 = 8;
+
+/// Splits edges whose length over the pose's diagonal, in the power mean over the poses, exceeds `length`, longest first.
 /// The new vertices of edges of rings and paths become part of these.
 pub(super) fn split_long_edges(mesh: &mut EditableMesh, curves: &mut Curves, diagonals: &[f64], length: f64) {
     let mut on_boundary: BTreeMap<(usize, usize), usize> = BTreeMap::new();
@@ -67,12 +71,12 @@ pub(super) fn split_long_edges(mesh: &mut EditableMesh, curves: &mut Curves, dia
 }
 
 fn mean_length(mesh: &EditableMesh, diagonals: &[f64], a: usize, b: usize) -> f64 {
-    let relative = mesh
+    let powers = mesh
         .positions
         .iter()
         .zip(diagonals)
-        .map(|(p, diagonal)| (p[b] - p[a]).norm() / diagonal);
-    relative.sum::<f64>() / diagonals.len() as f64
+        .map(|(p, diagonal)| ((p[b] - p[a]).norm() / diagonal).powi(LENGTH_POWER));
+    (powers.sum::<f64>() / diagonals.len() as f64).powf(1.0 / f64::from(LENGTH_POWER))
 }
 
 /// Splits the edge `a b` at its middle, if all new triangles are positive in every pose; gives the new vertex.

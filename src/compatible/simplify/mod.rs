@@ -129,7 +129,7 @@ const MERGE_DISTANCE: f64 = 1e-3;
 /// A shape is thin if its diagonal exceeds this many of its mean half-widths; its deviation is then measured against
 /// those instead, or the polygon would be half as wide again as the shape. With the default tolerance it may deviate by
 /// 0.44 half-widths.
-const THIN_SHAPE: f64 = 22.0;
+const THIN_SHAPE: f64 = 16.0;
 
 /// Area over perimeter: half the width of a long strip, a quarter of the diameter of a disc.
 fn mean_half_width(outline: &Outline) -> f64 {

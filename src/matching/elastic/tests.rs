@@ -1,6 +1,7 @@
 use std::f64::consts::TAU;
 
 use super::*;
+use crate::matching::curve::FINE_WINDOWS;
 use crate::matching::start::{distinct_minima, path_from_each_start};
 use crate::math::rotation;
 use crate::outline::Ring;
@@ -17,8 +18,14 @@ fn even(count: usize) -> Vec<f64> {
     (0..count).map(|k| k as f64 / count as f64).collect()
 }
 
+fn compared(first: &Curve, rows: Vec<f64>, second: &Curve, columns: Vec<f64>, forced: Vec<usize>) -> MismatchTable {
+    let samples = |curve: &Curve, parameters: Vec<f64>| Samples::new(curve, parameters, FINE_WINDOWS);
+    let first = samples(first, rows.clone());
+    MismatchTable::new(rows, &[first], samples(second, columns), forced)
+}
+
 fn table(count: usize) -> MismatchTable {
-    MismatchTable::new(&wavy(0.1, 0.0), even(count), &wavy(0.15, 1.0), even(count), Vec::new())
+    compared(&wavy(0.1, 0.0), even(count), &wavy(0.15, 1.0), even(count), Vec::new())
 }
 
 /// The definition, by recursion over all nodes: the cost of the cheapest way from `(0, start)` to each node.
@@ -63,7 +70,7 @@ fn the_cheapest_path_is_that_of_the_definition() {
 #[test]
 fn a_curve_matches_itself_along_the_diagonal() {
     let curve = wavy(0.1, 0.0);
-    let table = MismatchTable::new(&curve, even(32), &curve, even(32), Vec::new());
+    let table = compared(&curve, even(32), &curve, even(32), Vec::new());
     let path = cheapest_path(&table, 0, &table.reachable(0)).expect("a path");
     assert_eq!(path.cost, 0.0);
     assert!(path.nodes.iter().all(|(i, j)| i == j));
@@ -80,7 +87,7 @@ fn paths_go_through_forced_rows() {
             }
         })
         .collect();
-    let table = MismatchTable::new(&wavy(0.1, 0.0), even(32), &wavy(0.15, 0.0), columns, vec![8]);
+    let table = compared(&wavy(0.1, 0.0), even(32), &wavy(0.15, 0.0), columns, vec![8]);
     let path = cheapest_path(&table, 0, &table.reachable(0)).expect("a path");
     assert!(path.nodes.contains(&(8, 8)));
 }

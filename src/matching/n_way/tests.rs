@@ -198,7 +198,13 @@ proptest! {
             let expected = plain.correspondence.carry(0, 1, t);
             let found = other.correspondence.carry(0, 2, t) + offset;
             prop_assert!(cyclic_gap(expected, found) < 1e-3, "{} at {}", cyclic_gap(expected, found), t);
-            prop_assert!(cyclic_gap(plain.correspondence.carry(0, 2, t), other.correspondence.carry(0, 1, t)) < 1e-12);
+            // Every pose has a say in the match of every other, and so has the rounding of its place.
+            prop_assert!(cyclic_gap(plain.correspondence.carry(0, 2, t), other.correspondence.carry(0, 1, t)) < 1e-3);
+        }
+        let [first, second, third] = rings;
+        let swapped = match_rings(&[first, third, second], &[], &options).expect("a match");
+        for (row, swapped) in plain.correspondence.rows().iter().zip(swapped.correspondence.rows()) {
+            prop_assert_eq!([row[0], row[1], row[2]], [swapped[0], swapped[2], swapped[1]]);
         }
     }
 
@@ -232,4 +238,30 @@ proptest! {
             }
         }
     }
+}
+
+#[test]
+fn poses_learn_from_one_another_what_the_reference_does_not_show() {
+    // A circle with an arm at some angle; the reference has none, so that nothing ties the arms to it.
+    let with_arm = |angle: f64, length: f64| {
+        Ring::new((0..360).map(|k| {
+            let t = TAU * f64::from(k) / 360.0;
+            let offset = (t - angle + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+            rotation(t) * Point::new(1.0 + length * (-(offset / 0.12).powi(2)).exp(), 0.0)
+        }))
+        .expect("a ring")
+    };
+    let rings = [with_arm(0.0, 0.0), with_arm(0.4, 0.8), with_arm(1.6, 0.8)];
+    let options = MatchOptions {
+        reference: Some(0),
+        ..MatchOptions::default()
+    };
+    let matched = match_rings(&rings, &[], &options).expect("a match");
+    let tip = |ring: &Ring, angle: f64| {
+        let arc = crate::outline::ArcLength::new(ring);
+        arc.nearest(rotation(angle) * Point::new(1.8, 0.0)).0
+    };
+    let carried = matched.correspondence.carry(1, 2, tip(&rings[1], 0.4));
+    let off = carried - tip(&rings[2], 1.6);
+    assert!((off - off.round()).abs() < 0.01, "{off}");
 }
