@@ -6,8 +6,8 @@ use super::super::editable::{Curves, EditableMesh};
 use crate::math::Point;
 
 /// Power of the mean over the poses: nearly the longest counts, since a limb that is short in most poses and long in one has
-/// to bend there too, but one pose among many does not set the size of all triangles.
-const LENGTH_POWER: i32 = 8;
+/// to bend there, too.
+const LENGTH_POWER: i32 = 16;
 
 /// Splits edges whose length over the pose's diagonal, in the power mean over the poses, exceeds `length`, longest first.
 /// The new vertices of edges of rings and paths become part of these.
