@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         mapping.poses.topology().vertex_count(),
         mapping.poses.topology().triangles().len(),
         mapping.steiner,
-        report.smallest_angle_deg
+        report.quality.smallest_angle_deg
     ));
     Ok(())
 }
