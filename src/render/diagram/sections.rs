@@ -148,7 +148,9 @@ impl Sections {
             return Vec::new();
         };
         let mean = costs.iter().sum::<f64>() / costs.len().max(1) as f64;
-        let least = Self::DOUBTFUL_COST.max(Self::DOUBTFUL_SHARE * mean);
+        let most = costs.iter().copied().fold(0.0, f64::max);
+        // The worst counts even where all are nearly as bad.
+        let least = Self::DOUBTFUL_COST.max((Self::DOUBTFUL_SHARE * mean).min(most));
         let mut doubtful: Vec<usize> = (0..costs.len()).filter(|k| costs[*k] >= least).collect();
         doubtful.sort_by(|a, b| costs[*b].total_cmp(&costs[*a]));
         doubtful

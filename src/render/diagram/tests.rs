@@ -121,6 +121,10 @@ fn sections_run_between_corners_and_show_where_the_outlines_differ() {
     doubtful.sort_unstable();
     assert_eq!(doubtful, [3, 4, 5]);
     assert_eq!((sections.numbers(3), sections.numbers(11)), ((4, 5), (12, 1)));
+    // Unlike all over, the worst is.
+    let mut worse = vec![Sections::DOUBTFUL_COST; ROWS];
+    worse[2] *= 1.1;
+    assert_eq!(Sections::new(&mapping, &report(worse), &[]).doubtful(1), [0]);
     // Alike all over, nothing is doubtful.
     assert!(
         Sections::new(&mapping, &report(vec![0.0; ROWS]), &[])
