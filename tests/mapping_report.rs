@@ -152,8 +152,11 @@ fn show_says_where_a_landmark_would_help() {
             [0; 4]
         }
     });
+    // The ends of that side are landmarks, so that the teeth must lie along it.
     workshop.scene(
-        "[[pose]]\nname = \"plain\"\nsource = \"plain.png\"\n[[pose]]\nname = \"comb\"\nsource = \"comb.png\"\n",
+        "[[pose]]\nname = \"plain\"\nsource = \"plain.png\"\n[[pose]]\nname = \"comb\"\nsource = \"comb.png\"\n\
+         [[landmark]]\nname = \"left\"\nat = { plain = [4, 14], comb = [4, 14] }\n\
+         [[landmark]]\nname = \"right\"\nat = { plain = [36, 14], comb = [36, 14] }\n",
     );
     let output = workshop.run(&["show", "scene.toml", "-o", "picture.png"]);
     let text = String::from_utf8(output.stderr).expect("text");

@@ -234,7 +234,7 @@ fn deviation(polygon: &Outline, outline: &Outline) -> f64 {
         distances.fold(0.0, f64::max)
     };
     let rings = polygon.rings();
-    rings.into_iter().zip(outline.rings()).map(farthest).fold(0.0, f64::max) / outline.diagonal()
+    rings.iter().zip(outline.rings()).map(farthest).fold(0.0, f64::max) / outline.diagonal()
 }
 
 /// Each outline simplified alone; per pose, one ring of single tuples a ring.

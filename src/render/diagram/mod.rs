@@ -41,7 +41,7 @@ const BORDER_PX: f64 = 20.0;
 /// The height of a line of text, in pixels.
 const TEXT_PX: f64 = 15.0;
 /// The mismatch of a section that has the last colour of the scale.
-const MOST_COST: f64 = 2.0 * Sections::DOUBTFUL_COST;
+const MOST_COST: f64 = 3.0 * Sections::DOUBTFUL_COST;
 /// The colour of words and marks.
 const INK: Color = Color::BLACK;
 

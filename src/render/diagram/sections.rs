@@ -42,8 +42,8 @@ pub struct Sections {
 
 impl Sections {
     /// A landmark in a section is worth trying from this cost on: drawings of one character mostly stay below half of it,
-    /// silhouettes of different animals come near it all over.
-    pub const DOUBTFUL_COST: f64 = 4.0;
+    /// silhouettes of different animals come beyond it in most places.
+    pub const DOUBTFUL_COST: f64 = 2.5;
     /// And from this many times the mean of the pose's sections on: where all are unlike, the worst are worth a look.
     pub const DOUBTFUL_SHARE: f64 = 1.5;
 

@@ -112,7 +112,11 @@ fn sections_run_between_corners_and_show_where_the_outlines_differ() {
     assert_eq!(sections.links().len(), 12);
     assert!((sections.links()[3].at[1] - 0.25).abs() < 1e-12);
     for (k, cost) in sections.costs(1).iter().enumerate() {
-        let expected = if (3..6).contains(&k) { 8.0 } else { 0.0 };
+        let expected = if (3..6).contains(&k) {
+            2.0 * Sections::DOUBTFUL_COST
+        } else {
+            0.0
+        };
         assert!((cost - expected).abs() < 1e-9, "section {k} costs {cost}");
     }
     assert_eq!(sections.costs(0), sections.costs(1));
@@ -162,7 +166,10 @@ fn the_picture_marks_links_landmarks_doubtful_sections_and_thin_triangles() {
         let beside = outline.place(Point::new(2.0, 0.5)) + Point::new(4.0, 0.0);
         assert_eq!(pixel(&picture, beside) != [255; 4], pose == 1);
         let on_side = outline.place(Point::new(2.0, 0.5));
-        assert_eq!(pixel(&picture, on_side), bytes(cost_colour(8.0)));
+        assert_eq!(
+            pixel(&picture, on_side),
+            bytes(cost_colour(2.0 * Sections::DOUBTFUL_COST))
+        );
         let calm = outline.place(Point::new(0.5, 0.0));
         assert_eq!(pixel(&picture, calm), bytes(cost_colour(0.0)));
     }
