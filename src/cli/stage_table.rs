@@ -80,7 +80,11 @@ pub(crate) fn lines(
             let mut used: Vec<&str> = used.map(|landmark| landmark.name.as_str()).collect();
             let more = used.len().saturating_sub(NAMED);
             used.truncate(NAMED);
-            let mut through = used.join(", ");
+            let mut through = if used.is_empty() {
+                "-".to_owned()
+            } else {
+                used.join(", ")
+            };
             if more > 0 {
                 through.push_str(&format!(" and {more} more"));
             }

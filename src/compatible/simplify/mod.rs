@@ -34,8 +34,8 @@ use collapse::{Collapser, OriginalRing, PoseOriginal};
 use tuples::TupleRing;
 
 use crate::matching::Correspondence;
-use crate::math::Point;
-use crate::outline::{ArcLength, Outline, OutlineError, Ring, RingError};
+use crate::math::{Point, point};
+use crate::outline::{Outline, OutlineError, Ring, RingError};
 
 /// What the simplification may do.
 #[derive(Debug, Clone, PartialEq)]
@@ -228,13 +228,25 @@ pub fn simplify(
 
 /// The largest distance of a point of the outline from its polygon, as a fraction of the outline's diagonal.
 fn deviation(polygon: &Outline, outline: &Outline) -> f64 {
-    let farthest = |(polygon, ring): (&Ring, &Ring)| {
-        let polygon = ArcLength::new(polygon);
-        let distances = ring.points().iter().map(|p| polygon.nearest(*p).1);
-        distances.fold(0.0, f64::max)
-    };
-    let rings = polygon.rings();
-    rings.iter().zip(outline.rings()).map(farthest).fold(0.0, f64::max) / outline.diagonal()
+    let mut farthest = 0.0f64;
+    for (polygon, ring) in polygon.rings().iter().zip(outline.rings()) {
+        let mut nearest_edge = 0;
+        for p in ring.points() {
+            let mut nearest = f64::INFINITY;
+            // From the last point's edge on, until the point cannot be the farthest: one edge for most points.
+            for edge in (nearest_edge..polygon.len()).chain(0..nearest_edge) {
+                let (_, distance) = point::nearest_on_segment(*p, polygon.point(edge), polygon.point(edge + 1));
+                if distance < nearest {
+                    (nearest, nearest_edge) = (distance, edge);
+                }
+                if nearest <= farthest {
+                    break;
+                }
+            }
+            farthest = farthest.max(nearest);
+        }
+    }
+    farthest / outline.diagonal()
 }
 
 /// Each outline simplified alone; per pose, one ring of single tuples a ring.
