@@ -75,7 +75,11 @@ pub(super) fn draw(canvas: &mut Canvas, diagram: &Diagram, sections: &Sections, 
         let y = line(LINES as f64 - 0.75 + pose as f64);
         let name: String = said.name.chars().take(NAME_LETTERS).collect();
         canvas.text(&name, [left, y], small, pose_colour(pose, diagram.poses.len()));
-        let words = in_words(sections, pose);
+        let words = if diagram.poses.len() > 1 {
+            in_words(sections, pose)
+        } else {
+            String::new()
+        };
         let width = Canvas::text_size(&words, small).x;
         canvas.text(&words, [left + LEGEND_PX - width, y], small, INK);
     }
