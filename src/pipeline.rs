@@ -17,12 +17,14 @@ mod inside;
 mod landmark_path;
 mod landmarks;
 mod mapping;
+mod report;
 mod triangulation;
 mod weighting;
 
 pub use character::Character;
 pub use drawings::read_drawings;
 pub use error::PipelineError;
-pub use mapping::{MappingReport, map_drawings};
+pub use mapping::{map_drawings, map_drawings_observed};
+pub use report::{MappingReport, Stage};
 pub use triangulation::{LandmarkLabel, Refinement, triangulate_polygons};
 pub use weighting::{checked_weights, weight_provider};

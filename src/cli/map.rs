@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use inbetween::pipeline::{map_drawings, read_drawings};
+use inbetween::pipeline::{map_drawings_observed, read_drawings};
 use inbetween::scene::Scene;
 
 use super::output::Output;
+use super::stage_table::{self, StageClock};
 use super::{Failure, Verbosity};
 
 /// Map the drawings of a scene onto one another and write the mapping
@@ -14,7 +15,10 @@ use super::{Failure, Verbosity};
 /// The mapping is one triangulation with a place of every vertex on every pose, as JSON: poses with outlines and
 /// vertices, triangles, boundary rings and the matching of the outlines.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  inbetween map walker/scene.toml -o walker.json && inbetween check walker.json")]
+#[command(after_help = "\
+Examples:
+  inbetween map walker/scene.toml -o walker.json && inbetween check walker.json
+  inbetween map walker/scene.toml -o walker.json --report   what each stage did, and its time")]
 pub(crate) struct Arguments {
     /// The scene file
     scene: PathBuf,
@@ -24,6 +28,9 @@ pub(crate) struct Arguments {
     /// The layer, in a scene with layers
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
+    /// Also say what each stage did and how long it took, on standard error
+    #[arg(long)]
+    report: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
@@ -37,19 +44,28 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     }
     let output = Output::open(&arguments.output)?;
     let in_scene = || scene.file.display().to_string();
+    let mut clock = StageClock::start();
     let drawings = read_drawings(&scene).with_context(in_scene)?;
-    let (mapping, report) = map_drawings(&scene, &drawings).with_context(in_scene)?;
+    let observed = map_drawings_observed(&scene, &drawings, &mut |stage| clock.begins(stage));
+    clock.stop();
+    let (mapping, report) = observed.with_context(in_scene)?;
     for note in &report.notes {
         verbosity.note(&format!("note: {note}"));
     }
     output.write(mapping.to_json().as_bytes())?;
+    if arguments.report {
+        for line in stage_table::lines(&drawings, &mapping, &report, &clock) {
+            verbosity.note(&line);
+        }
+        return Ok(());
+    }
     verbosity.note(&format!(
         "{} poses, {} vertices, {} triangles, {} Steiner points, smallest angle {:.1} degrees",
         mapping.poses.len(),
         mapping.poses.topology().vertex_count(),
         mapping.poses.topology().triangles().len(),
         mapping.steiner,
-        report.smallest_angle_deg
+        report.quality.smallest_angle_deg
     ));
     Ok(())
 }

@@ -13,6 +13,7 @@ mod output;
 mod progress;
 mod render;
 mod show;
+mod stage_table;
 mod triangulate;
 mod values;
 mod weights;

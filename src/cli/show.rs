@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use inbetween::export::png_bytes;
 use inbetween::pipeline::{map_drawings, read_drawings, weight_provider};
-use inbetween::render::diagram::{self, DiagramPose};
+use inbetween::render::diagram::{self, Diagram, DiagramPose, Sections};
 use inbetween::scene::Scene;
 
 use super::output::Output;
@@ -13,8 +13,9 @@ use super::{Failure, Verbosity};
 
 /// Explain a scene in one picture
 ///
-/// Top: the outlines of all poses; equal colours and numbers correspond. Middle: the mesh on every pose. Bottom: the
-/// pose space, each place coloured by the weights of the poses there, the animation's path drawn in.
+/// Top: the outlines of all poses; equal numbers correspond, the colour between two says how unlike the outlines are, so
+/// that you see where to put a landmark. Middle: the mesh on every pose, its thinnest triangles marked. Bottom: the pose
+/// space, each place coloured by the weights of the poses there, the animation's path drawn in.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  inbetween show walker/scene.toml -o walker.png")]
 pub(crate) struct Arguments {
@@ -51,8 +52,33 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         let mut weights = Vec::new();
         provider.weights(place, &mut weights).ok().map(|()| weights)
     };
-    let picture =
-        diagram::draw(&mapping, &poses, &path, weights).map_err(|e| anyhow::anyhow!("{}: {e}", in_scene()))?;
+    let sections = Sections::new(&mapping, &report.matching, &report.landmarks);
+    let diagram = Diagram {
+        mapping: &mapping,
+        matching: &report.matching,
+        landmarks: &report.landmarks,
+        poses: &poses,
+        path: &path,
+    };
+    let picture = diagram::draw(&diagram, &sections, weights).map_err(|e| anyhow::anyhow!("{}: {e}", in_scene()))?;
     let bytes = png_bytes(&picture).map_err(|reason| anyhow::anyhow!("{}: {reason}", arguments.output.display()))?;
-    Ok(output.write(&bytes)?)
+    output.write(&bytes)?;
+    for line in in_words(&sections, mapping.poses.names()) {
+        verbosity.note(&line);
+    }
+    Ok(())
+}
+
+/// Where a landmark is worth trying: the worst section of every pose that has a doubtful one.
+fn in_words(sections: &Sections, names: &[String]) -> Vec<String> {
+    let line = |(pose, name): (usize, &String)| {
+        let worst = *sections.doubtful(pose).first()?;
+        let (from, to) = sections.numbers(worst);
+        (pose != sections.reference()).then(|| {
+            format!(
+                "pose '{name}': between links {from} and {to} the outlines differ most; a landmark there would help"
+            )
+        })
+    };
+    names.iter().enumerate().filter_map(line).collect()
 }

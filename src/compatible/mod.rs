@@ -1,4 +1,21 @@
 //! Compatible simplification and triangulation.
+//!
+//! [`simplify`] makes polygons of outlines, [`triangulate`] a mesh of polygons, [`refine`] a better mesh of a mesh. Each
+//! can be used by itself:
+//!
+//! ```
+//! use inbetween::{compatible::{RefineOptions, refine, triangulate}, math::Point, outline::{Outline, Ring}};
+//! let rectangle = |width: f64| -> Result<Outline, Box<dyn std::error::Error>> {
+//!     let corners = [[0.0, 0.0], [width, 0.0], [width, 1.0], [0.0, 1.0]];
+//!     Ok(Outline::new(Ring::new(corners.map(Point::from))?, vec![])?)
+//! };
+//! let (bare, _) = triangulate(&[rectangle(1.0)?, rectangle(2.0)?], &[])?;
+//! assert_eq!(bare.topology.triangles().len(), 2);
+//! let (mesh, report) = refine(&bare, &RefineOptions::default().with_edge_length(0.1))?;
+//! assert_eq!(mesh.topology.vertex_count(), 4 + report.splits);
+//! assert!(report.low_angle_deg > 12.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod editable;
 mod refine;

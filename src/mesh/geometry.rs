@@ -55,6 +55,27 @@ pub fn smallest_angle_rad(triangle: [Point; 3]) -> f64 {
     angles_rad(triangle).into_iter().fold(f64::INFINITY, f64::min)
 }
 
+/// How much more a triangle is stretched in one direction than across it when `from` becomes `to`: the ratio of the
+/// singular values of the linear map between them, at least 1; exactly 1 up to rounding for a similarity, infinite where
+/// `from` or `to` has no area.
+#[must_use]
+pub fn stretch(from: [Point; 3], to: [Point; 3]) -> f64 {
+    let Some(inverse) = edge_matrix(from).try_inverse() else {
+        return f64::INFINITY;
+    };
+    let map = edge_matrix(to) * inverse;
+    // The singular values of a 2 x 2 matrix are the sum and the difference of the lengths of its similar and its
+    // reflected part.
+    let similar = (map.m11 + map.m22).hypot(map.m21 - map.m12);
+    let reflected = (map.m11 - map.m22).hypot(map.m21 + map.m12);
+    let least = (similar - reflected).abs();
+    if least > 0.0 {
+        (similar + reflected) / least
+    } else {
+        f64::INFINITY
+    }
+}
+
 /// The barycentric coordinates of `p`; `None` for a triangle of zero area.
 #[must_use]
 pub fn barycentric([a, b, c]: [Point; 3], p: Point) -> Option<[f64; 3]> {
@@ -70,6 +91,25 @@ pub fn barycentric([a, b, c]: [Point; 3], p: Point) -> Option<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn stretch_is_the_ratio_of_singular_values() {
+        let triangle = [[0.0, 0.0], [3.0, 0.0], [1.0, 4.0]].map(Point::from);
+        for map in [
+            Matrix::new(1.0, 0.3, -0.2, 0.7),
+            Matrix::new(0.1, -2.0, 1.5, 0.4),
+            Matrix::new(5.0, 0.0, 0.0, 0.5),
+        ] {
+            let singular = map.svd(false, false).singular_values;
+            let moved = triangle.map(|p| map * p + Point::new(3.0, -1.0));
+            let ratio = stretch(triangle, moved);
+            assert!((ratio - singular[0] / singular[1]).abs() < 1e-12 * ratio);
+            assert!((ratio - stretch(moved, triangle)).abs() < 1e-12 * ratio);
+        }
+        let flat = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]].map(Point::from);
+        assert_eq!(stretch(flat, triangle), f64::INFINITY);
+        assert_eq!(stretch(triangle, flat), f64::INFINITY);
+    }
 
     #[test]
     fn measures_of_a_right_triangle() {

@@ -8,11 +8,12 @@ use super::PipelineError;
 use super::drawings::{mirror_axis, reflected};
 use super::inside::{self, Obstacles};
 use super::landmark_path;
-use crate::compatible::{FeaturePath, Features, PathEnd};
+use crate::compatible::{CompatibleMesh, FeaturePath, Features, PathEnd};
 use crate::input::Drawing;
 use crate::matching::Landmark;
 use crate::math::{Point, point};
 use crate::outline::{ArcLength, Outline};
+use crate::pose::{LandmarkKind, PlacedLandmark};
 use crate::scene::{Facing, Scene};
 
 /// How far a landmark may lie from the outline it is snapped to, as a fraction of the pose's diagonal: a few times the
@@ -133,6 +134,46 @@ impl Landmarks {
             self.on_outline.push(landmark);
             self.on_outline.len() - 1
         })
+    }
+
+    /// All landmarks on every pose of the finished mesh: those on the outline, points inside, lines. `anchors` are the places
+    /// of the first (#landmarks x #poses).
+    pub(super) fn placed(&self, anchors: &[Vec<Point>], mesh: &CompatibleMesh) -> Vec<PlacedLandmark> {
+        let on_outline = self
+            .on_outline
+            .iter()
+            .zip(anchors)
+            .map(|(landmark, places)| PlacedLandmark {
+                name: landmark.name.clone(),
+                kind: LandmarkKind::OnOutline,
+                at: places.iter().map(|place| vec![*place]).collect(),
+                given: landmark.at.iter().map(Option::is_some).collect(),
+            });
+        let along = |vertices: &[usize]| -> Vec<Vec<Point>> {
+            let places = |positions: &Vec<Point>| vertices.iter().map(|&v| positions[v]).collect();
+            mesh.positions.iter().map(places).collect()
+        };
+        let inside = self
+            .points
+            .iter()
+            .zip(&mesh.landmarks)
+            .map(|(point, vertex)| PlacedLandmark {
+                name: point.name.clone(),
+                kind: LandmarkKind::Inside,
+                at: along(&[*vertex]),
+                given: point.at.iter().map(Option::is_some).collect(),
+            });
+        let lines = self
+            .paths
+            .iter()
+            .zip(&mesh.paths)
+            .map(|(path, vertices)| PlacedLandmark {
+                name: path.name.clone(),
+                kind: LandmarkKind::Line,
+                at: along(vertices),
+                given: path.at.iter().map(Option::is_some).collect(),
+            });
+        on_outline.chain(inside).chain(lines).collect()
     }
 
     /// What the triangulation has to meet inside `polygons`: lines simplified to `tolerance` (of the diagonals), and

@@ -2,103 +2,94 @@
 
 use super::landmarks::{self, Landmarks};
 use super::triangulation::{self, Labels, LandmarkLabel};
-use super::{PipelineError, Refinement};
+use super::{MappingReport, PipelineError, Stage};
 use crate::compatible::{
-    CompatibleMesh, RefineOptions, SimplifyError, SimplifyOptions, simplify, triangulate_features,
+    CompatibleMesh, RefineOptions, SimplifyError, SimplifyOptions, TriangulateReport, refine, simplify,
+    triangulate_features,
 };
 use crate::input::Drawing;
-use crate::matching::{Correspondence, Landmark, MatchError, MatchOptions, MirrorHints, match_rings};
+use crate::matching::{Correspondence, Landmark, MatchError, MatchOptions, MatchReport, MirrorHints, match_rings};
 use crate::math::Point;
 use crate::outline::{ArcLength, Outline, Ring};
-use crate::pose::{Mapping, Matching, PoseSet};
+use crate::pose::{Mapping, Matching, MeshQuality, PoseSet};
 use crate::scene::Scene;
 
 /// Lines inside are simplified to the mesh's tolerance; where they then touch the outline or one another, to these shares
 /// of it.
 const FINER_LINES: [f64; 4] = [1.0, 0.25, 0.0625, 0.0];
 
-/// What an artist should know about a mapping.
-#[derive(Debug, Clone, Default)]
-pub struct MappingReport {
-    /// One line a remark, each naming its pose.
-    pub notes: Vec<String>,
-    /// Corresponding vertices of the simplified boundary.
-    pub boundary_vertices: usize,
-    /// The smallest angle of any triangle in any pose, in degrees.
-    pub smallest_angle_deg: f64,
-}
-
 /// Maps the drawings of a scene onto one another.
 ///
 /// # Errors
 /// [`PipelineError`] if holes or landmarks do not fit, or a stage refuses.
 pub fn map_drawings(scene: &Scene, drawings: &[Drawing]) -> Result<(Mapping, MappingReport), PipelineError> {
+    map_drawings_observed(scene, drawings, &mut |_| ())
+}
+
+/// As [`map_drawings`]; `begins` is told every stage as it begins, in the order of [`Stage`]. The library reads no clock:
+/// whoever wants to know how long a stage takes looks at one there.
+///
+/// # Errors
+/// As [`map_drawings`].
+pub fn map_drawings_observed(
+    scene: &Scene,
+    drawings: &[Drawing],
+    begins: &mut dyn FnMut(Stage),
+) -> Result<(Mapping, MappingReport), PipelineError> {
     let names = scene.names();
-    let mut report = MappingReport::default();
+    let mut notes = Vec::new();
     for (name, drawing) in names.iter().zip(drawings) {
-        report
-            .notes
-            .extend(drawing.notes.iter().map(|note| format!("pose '{name}': {note}")));
+        notes.extend(drawing.notes.iter().map(|note| format!("pose '{name}': {note}")));
     }
     let mut outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
     check_hole_counts(&names, &outlines)?;
     let landmarks = landmarks::sorted(scene, drawings)?;
-    let on_outline = &landmarks.on_outline;
-    let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
-    let mut options = MatchOptions {
-        reference: scene.reference,
-        ..MatchOptions::default()
-    };
-    let matched = match_rings(&outer, on_outline, &options).map_err(|error| match_refusal(&names, error))?;
-    for (pose, _) in matched
-        .report
-        .poses
-        .iter()
-        .enumerate()
-        .filter(|(_, pose)| pose.looks_mirrored)
-    {
-        report.notes.push(format!(
-            "pose '{}' would match better reflected; set `mirror = true` if it faces the other way",
-            names[pose]
-        ));
-    }
-    order_holes(&mut outlines, matched.reference)?;
-    let mut correspondences = vec![matched.correspondence];
-    for hole in 0..outlines.first().map_or(0, |outline| outline.holes().len()) {
-        let rings: Vec<Ring> = outlines.iter().map(|outline| outline.holes()[hole].clone()).collect();
-        options.reference = Some(matched.reference);
-        options.mirror_hints = MirrorHints::Skip;
-        let matched = match_rings(&rings, &[], &options).map_err(|error| match_refusal(&names, error))?;
-        correspondences.push(matched.correspondence);
+
+    begins(Stage::Matching);
+    let matched = match_outlines(scene, &mut outlines, &landmarks.on_outline)?;
+    for (pose, name) in names.iter().enumerate() {
+        if matched.outer.poses[pose].looks_mirrored {
+            notes.push(format!(
+                "pose '{name}' would match better reflected; set `mirror = true` if it faces the other way"
+            ));
+        }
     }
 
-    let pinned: Vec<Vec<f64>> = on_outline
+    begins(Stage::Simplification);
+    let pinned: Vec<Vec<f64>> = (landmarks.on_outline)
         .iter()
-        .filter_map(|landmark| everywhere(landmark, &correspondences[0]))
+        .filter_map(|landmark| everywhere(landmark, &matched.correspondences[0]))
         .collect();
     let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
-    let simplified = simplify(&outlines, &correspondences, &pinned, &options).map_err(|error| {
-        let pose = match &error {
-            SimplifyError::RingCount { pose, .. }
-            | SimplifyError::Degenerate { pose, .. }
-            | SimplifyError::NotSimple { pose, .. } => Some(*pose),
-            _ => None,
-        };
-        PipelineError::stage(&names, pose, error)
-    })?;
-    report.boundary_vertices = simplified.report.vertices;
-    let refinement = Refinement::Refine(RefineOptions::default().with_edge_length(scene.mesh.edge_length));
-    let measured: Vec<ArcLength> = outer.iter().map(ArcLength::new).collect();
+    let simplified = simplify(&outlines, &matched.correspondences, &pinned, &options)
+        .map_err(|error| simplify_refusal(&names, error))?;
+
+    begins(Stage::Triangulation);
+    let measured: Vec<ArcLength> = outlines.iter().map(|outline| ArcLength::new(outline.outer())).collect();
     let anchors: Vec<Vec<Point>> = pinned
         .iter()
         .map(|at| at.iter().zip(&measured).map(|(&t, outline)| outline.at(t)).collect())
         .collect();
-    let (mesh, notes) = bare_mesh(scene, drawings, &simplified.polygons, &landmarks, &anchors)?;
-    report.notes.extend(notes);
-    let (mesh, smallest_angle_deg) = triangulation::refined(&names, mesh, &refinement)?;
-    report.smallest_angle_deg = smallest_angle_deg;
+    let bare = bare_mesh(scene, drawings, &simplified.polygons, &landmarks, &anchors)?;
+    notes.extend(bare.notes);
+
+    begins(Stage::Refinement);
+    let options = RefineOptions::default().with_edge_length(scene.mesh.edge_length);
+    let (mesh, refinement) = refine(&bare.mesh, &options).map_err(|error| PipelineError::stage(&names, None, error))?;
+    let placed = landmarks.placed(&anchors, &mesh);
     let poses = PoseSet::new(mesh.topology, names.iter().cloned().zip(mesh.positions).collect())
         .map_err(|error| PipelineError::stage(&names, None, error))?;
+    let report = MappingReport {
+        notes,
+        matching: matched.outer,
+        holes: matched.holes,
+        landmarks: placed,
+        simplification: simplified.report,
+        triangulation: bare.report,
+        refinement,
+        quality: MeshQuality::of(&poses),
+    };
+    let mut correspondences = matched.correspondences;
     let mapping = Mapping {
         poses,
         outlines,
@@ -112,14 +103,59 @@ pub fn map_drawings(scene: &Scene, drawings: &[Drawing]) -> Result<(Mapping, Map
     Ok((mapping, report))
 }
 
-/// The triangulation of the polygons with everything inside them, and what was placed.
+/// All rings, matched.
+struct Matched {
+    reference: usize,
+    /// Outer ring first.
+    correspondences: Vec<Correspondence>,
+    outer: MatchReport,
+    holes: Vec<MatchReport>,
+}
+
+/// Matches the outer rings, puts the holes of all poses in one order, and matches them.
+fn match_outlines(scene: &Scene, outlines: &mut [Outline], landmarks: &[Landmark]) -> Result<Matched, PipelineError> {
+    let names = scene.names();
+    let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
+    let mut options = MatchOptions {
+        reference: scene.reference,
+        ..MatchOptions::default()
+    };
+    let refusal = |error| match_refusal(&names, error);
+    let first = match_rings(&outer, landmarks, &options).map_err(refusal)?;
+    order_holes(outlines, first.reference)?;
+    let mut matched = Matched {
+        reference: first.reference,
+        correspondences: vec![first.correspondence],
+        outer: first.report,
+        holes: Vec::new(),
+    };
+    options.reference = Some(matched.reference);
+    options.mirror_hints = MirrorHints::Skip;
+    for hole in 0..outlines.first().map_or(0, |outline| outline.holes().len()) {
+        let rings: Vec<Ring> = outlines.iter().map(|outline| outline.holes()[hole].clone()).collect();
+        let of_hole = match_rings(&rings, &[], &options).map_err(refusal)?;
+        matched.correspondences.push(of_hole.correspondence);
+        matched.holes.push(of_hole.report);
+    }
+    Ok(matched)
+}
+
+/// A triangulation before it is refined.
+struct Bare {
+    mesh: CompatibleMesh,
+    report: TriangulateReport,
+    /// What was placed.
+    notes: Vec<String>,
+}
+
+/// The triangulation of the polygons with everything inside them.
 fn bare_mesh(
     scene: &Scene,
     drawings: &[Drawing],
     polygons: &[Outline],
     landmarks: &Landmarks,
     anchors: &[Vec<Point>],
-) -> Result<(CompatibleMesh, Vec<String>), PipelineError> {
+) -> Result<Bare, PipelineError> {
     let label = |name: &String, line: usize| LandmarkLabel {
         name: name.clone(),
         line,
@@ -132,7 +168,7 @@ fn bare_mesh(
     for share in FINER_LINES {
         let (features, notes) = landmarks.features(scene, drawings, polygons, anchors, share * scene.mesh.simplify)?;
         match triangulate_features(polygons, &features) {
-            Ok((mesh, _)) => return Ok((mesh, notes)),
+            Ok((mesh, report)) => return Ok(Bare { mesh, report, notes }),
             Err(error) => {
                 let may_be_coarse = triangulation::concerns_a_path(&error);
                 refusal = triangulation::refusal(&scene.names(), &labels, error);
@@ -143,6 +179,17 @@ fn bare_mesh(
         }
     }
     Err(refusal)
+}
+
+/// The simplification's refusal with the pose's name.
+fn simplify_refusal(names: &[String], error: SimplifyError) -> PipelineError {
+    let pose = match &error {
+        SimplifyError::RingCount { pose, .. }
+        | SimplifyError::Degenerate { pose, .. }
+        | SimplifyError::NotSimple { pose, .. } => Some(*pose),
+        _ => None,
+    };
+    PipelineError::stage(names, pose, error)
 }
 
 /// The matching's refusal with the poses' names.

@@ -1,8 +1,7 @@
 //! From polygons with corresponding vertices to one mesh.
 
 use super::PipelineError;
-use crate::compatible::{CompatibleMesh, Feature, RefineOptions, TriangulateError, refine, triangulate};
-use crate::mesh::geometry;
+use crate::compatible::{Feature, RefineOptions, TriangulateError, refine, triangulate};
 use crate::pose::{Mapping, Matching, Polygons, PoseSet};
 
 /// Whether a triangulation is refined.
@@ -43,7 +42,15 @@ impl std::fmt::Display for LandmarkLabel {
 pub fn triangulate_polygons(polygons: &Polygons, refinement: &Refinement) -> Result<Mapping, PipelineError> {
     let (mesh, _) =
         triangulate(&polygons.outlines, &[]).map_err(|error| refusal(&polygons.names, &Labels::default(), error))?;
-    let (mesh, _) = refined(&polygons.names, mesh, refinement)?;
+    let mesh = match refinement {
+        Refinement::Bare => mesh,
+        Refinement::Refine(options) => {
+            let refined = refine(&mesh, options);
+            refined
+                .map_err(|error| PipelineError::stage(&polygons.names, None, error))?
+                .0
+        }
+    };
     let poses = PoseSet::new(
         mesh.topology,
         polygons.names.iter().cloned().zip(mesh.positions).collect(),
@@ -108,33 +115,5 @@ pub(super) fn refusal(names: &[String], labels: &Labels, error: TriangulateError
             other: pose_name(0),
         },
         _ => PipelineError::stage(names, None, error),
-    }
-}
-
-/// The mesh as asked for, and its smallest angle in any pose in degrees.
-pub(super) fn refined(
-    names: &[String],
-    mesh: CompatibleMesh,
-    refinement: &Refinement,
-) -> Result<(CompatibleMesh, f64), PipelineError> {
-    match refinement {
-        Refinement::Bare => {
-            let smallest = mesh
-                .positions
-                .iter()
-                .flat_map(|positions| {
-                    let corners = |t: &[usize; 3]| geometry::corners(positions, *t);
-                    mesh.topology
-                        .triangles()
-                        .iter()
-                        .map(move |t| geometry::smallest_angle_rad(corners(t)))
-                })
-                .fold(f64::INFINITY, f64::min);
-            Ok((mesh, smallest.to_degrees()))
-        }
-        Refinement::Refine(options) => {
-            let (mesh, report) = refine(&mesh, options).map_err(|error| PipelineError::stage(names, None, error))?;
-            Ok((mesh, report.smallest_angle_deg))
-        }
     }
 }

@@ -1,9 +1,13 @@
 //! One topology with N embeddings, and the mapping that the pipeline makes of N drawings.
 
 mod json;
+mod landmark;
 mod mapping;
 mod pose_set;
+mod quality;
 
 pub use json::{MappingFileError, Polygons};
+pub use landmark::{LandmarkKind, PlacedLandmark};
 pub use mapping::{Mapping, MappingError, Matching};
 pub use pose_set::{PoseSet, PoseSetError};
+pub use quality::MeshQuality;

@@ -34,7 +34,7 @@ use collapse::{Collapser, OriginalRing, PoseOriginal};
 use tuples::TupleRing;
 
 use crate::matching::Correspondence;
-use crate::math::Point;
+use crate::math::{Point, point};
 use crate::outline::{Outline, OutlineError, Ring, RingError};
 
 /// What the simplification may do.
@@ -79,6 +79,8 @@ pub struct SimplifyReport {
     pub vertices: usize,
     /// Per pose, the polygon's area over the outline's, minus 1.
     pub excess_area: Vec<f64>,
+    /// Per pose, the largest distance of an outline point from the polygon, as a fraction of the pose's diagonal.
+    pub deviation: Vec<f64>,
 }
 
 /// Why outlines could not be simplified.
@@ -141,6 +143,25 @@ fn mean_half_width(outline: &Outline) -> f64 {
 /// `correspondences` holds one correspondence a ring, outer ring first; `landmarks` the boundary landmarks of the outer
 /// ring, as rows of parameters, one a pose: they survive as vertices.
 ///
+/// # Examples
+/// ```
+/// use inbetween::{compatible::{SimplifyOptions, simplify}, matching::Correspondence};
+/// use inbetween::{math::Point, outline::{Outline, Ring}};
+/// let side = |k: usize| k as f64 / 10.0;
+/// let square = Ring::new((0..40).map(|k| match k / 10 {
+///     0 => Point::new(side(k), 0.0),
+///     1 => Point::new(1.0, side(k - 10)),
+///     2 => Point::new(1.0 - side(k - 20), 1.0),
+///     _ => Point::new(0.0, 1.0 - side(k - 30)),
+/// }))?;
+/// let outline = Outline::new(square, vec![])?;
+/// let poses = [outline.clone(), outline];
+/// let simplified = simplify(&poses, &[Correspondence::identity(2, 40)], &[], &SimplifyOptions::default())?;
+/// assert_eq!(simplified.polygons[0].outer().len(), 4);
+/// assert_eq!((simplified.report.vertices, simplified.report.deviation[0]), (4, 0.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`SimplifyError`] if ring counts differ, the tolerance is not positive, or an outline degenerates.
 pub fn simplify(
@@ -200,8 +221,32 @@ pub fn simplify(
             .zip(outlines)
             .map(|(p, o)| p.area() / o.area() - 1.0)
             .collect(),
+        deviation: polygons.iter().zip(outlines).map(|(p, o)| deviation(p, o)).collect(),
     };
     Ok(Simplified { polygons, report })
+}
+
+/// The largest distance of a point of the outline from its polygon, as a fraction of the outline's diagonal.
+fn deviation(polygon: &Outline, outline: &Outline) -> f64 {
+    let mut farthest = 0.0f64;
+    for (polygon, ring) in polygon.rings().iter().zip(outline.rings()) {
+        let mut nearest_edge = 0;
+        for p in ring.points() {
+            let mut nearest = f64::INFINITY;
+            // From the last point's edge on, until the point cannot be the farthest: one edge for most points.
+            for edge in (nearest_edge..polygon.len()).chain(0..nearest_edge) {
+                let (_, distance) = point::nearest_on_segment(*p, polygon.point(edge), polygon.point(edge + 1));
+                if distance < nearest {
+                    (nearest, nearest_edge) = (distance, edge);
+                }
+                if nearest <= farthest {
+                    break;
+                }
+            }
+            farthest = farthest.max(nearest);
+        }
+    }
+    farthest / outline.diagonal()
 }
 
 /// Each outline simplified alone; per pose, one ring of single tuples a ring.

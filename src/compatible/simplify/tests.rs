@@ -115,3 +115,22 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn the_reported_deviation_is_that_of_the_farthest_point() {
+    let outlines = [wavy(200, 5, 0.2, 0.0), wavy(160, 7, 0.1, 1.0)];
+    let correspondence = Correspondence::identity(2, 64);
+    let options = SimplifyOptions::default().with_tolerance(0.03);
+    let simplified = simplify(&outlines, &[correspondence], &[], &options).expect("simplified");
+    for ((polygon, outline), reported) in simplified
+        .polygons
+        .iter()
+        .zip(&outlines)
+        .zip(&simplified.report.deviation)
+    {
+        let measured = ArcLength::new(polygon.outer());
+        let distances = outline.outer().points().iter().map(|p| measured.nearest(*p).1);
+        let farthest = distances.fold(0.0, f64::max) / outline.diagonal();
+        assert!((farthest - reported).abs() < 1e-12 && farthest > 0.0);
+    }
+}

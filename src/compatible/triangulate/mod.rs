@@ -160,6 +160,23 @@ impl From<bridge::Narrow> for TriangulateError {
 ///
 /// `landmarks` are points inside the polygons: #landmarks x #poses; see [`triangulate_features`].
 ///
+/// # Examples
+/// ```
+/// use inbetween::{compatible::triangulate, math::Point, outline::{Outline, Ring}};
+/// let polygon = |corners: [[f64; 2]; 4]| -> Result<Outline, Box<dyn std::error::Error>> {
+///     Ok(Outline::new(Ring::new(corners.map(Point::from))?, vec![])?)
+/// };
+/// // The first is reflex at its last corner, the second at its first: they have no diagonal in common.
+/// let poses = [
+///     polygon([[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [1.0, 1.0]])?,
+///     polygon([[1.0, 3.0], [4.0, 4.0], [0.0, 4.0], [0.0, 0.0]])?,
+/// ];
+/// let (mesh, report) = triangulate(&poses, &[])?;
+/// assert!(mesh.steiner > 0 && mesh.positions.len() == 2);
+/// assert_eq!(mesh.steiner, report.single + report.link + report.overlay - report.decimated);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// As [`triangulate_features`].
 pub fn triangulate(

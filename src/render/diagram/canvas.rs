@@ -6,6 +6,9 @@ use super::stroke_font;
 use crate::math::{Point, point};
 use crate::render::Frame;
 
+/// How high letters are, as a share of their line.
+const LETTER_SHARE: f64 = 0.75;
+
 /// A white sheet to draw on.
 pub(super) struct Canvas {
     pixmap: Pixmap,
@@ -66,6 +69,25 @@ impl Canvas {
         }
     }
 
+    /// A circle.
+    pub(super) fn circle(&mut self, centre: Point, radius: f64, width: f64, colour: Color) {
+        const CORNERS: usize = 32;
+        let on_circle = |k: usize| {
+            let (sin, cos) = (std::f64::consts::TAU * k as f64 / CORNERS as f64).sin_cos();
+            centre + Point::new(cos, sin) * radius
+        };
+        let points: Vec<Point> = (0..=CORNERS).map(on_circle).collect();
+        self.line(&points, width, colour);
+    }
+
+    /// A square with a thin white rim.
+    pub(super) fn square(&mut self, centre: Point, half: f64, colour: Color) {
+        for (h, c) in [(half + 1.0, Color::WHITE), (half, colour)] {
+            let corners = [[-h, -h], [h, -h], [h, h], [-h, h]].map(|d| centre + Point::from(d));
+            self.fill(&corners, c);
+        }
+    }
+
     /// One pixel, which must be on the sheet.
     pub(super) fn pixel(&mut self, x: u32, y: u32, colour: Color) {
         let index = (y * self.pixmap.width() + x) as usize;
@@ -80,12 +102,23 @@ impl Canvas {
             for stroke in stroke_font::strokes(words) {
                 let points: Vec<Point> = stroke
                     .iter()
-                    .map(|p| Point::new(left, top) + p * (0.75 * height))
+                    .map(|p| Point::new(left, top) + p * (LETTER_SHARE * height))
                     .collect();
                 let ink = if band { Color::WHITE } else { colour };
                 self.line(&points, line_width * height, ink);
             }
         }
+    }
+
+    /// How wide and high [`Self::text`] of some height is, in pixels.
+    pub(super) fn text_size(words: &str, height: f64) -> Point {
+        stroke_font::size(words) * (LETTER_SHARE * height)
+    }
+
+    /// Words whose middle is at a place.
+    pub(super) fn text_around(&mut self, words: &str, middle: Point, height: f64, colour: Color) {
+        let corner = middle - Self::text_size(words, height) * 0.5;
+        self.text(words, [corner.x, corner.y], height, colour);
     }
 
     pub(super) fn into_frame(self) -> Frame {

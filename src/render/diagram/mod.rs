@@ -1,31 +1,49 @@
-//! A mapping and its pose space in one picture, for the artist who wants to know what happened.
+//! A mapping and its pose space in one picture, for the artist who wants to know what happened and where a landmark would
+//! help.
 //!
-//! 1. The outlines: points of equal colour correspond; every few of them carry a number and are linked from pose to pose.
-//! 2. The meshes: one triangulation, drawn on every pose; triangles keep their colour.
+//! 1. The outlines, coloured by how unlike they are to the reference's in each section between two numbered links; salient
+//!    points as circles, the larger the more smoothing they survive; landmarks and lines with their names. Doubtful
+//!    sections lie on a broad band and are labelled ([`Sections`]).
+//! 2. The meshes: one triangulation, drawn on every pose; triangles keep their colour, those with the smallest angles
+//!    in a pose are marked.
 //! 3. The pose space: each place has the mean of the poses' colours by their weights, with lines where another
-//!    pose becomes the heaviest; dots are the poses, the line is the animation's path.
+//!    pose becomes the heaviest; dots are the poses, the line is the animation's path. Beside it the legend.
 
 mod canvas;
+mod labels;
+mod layout;
+mod legend;
+mod meshes;
 mod outlines;
 mod pose_space;
+mod sections;
 mod stroke_font;
 
-use canvas::{Canvas, Fit};
+#[cfg(test)]
+mod tests;
+
+use canvas::Canvas;
+use layout::Layout;
 use tiny_skia::Color;
 
-use super::Frame;
-use crate::pose::Mapping;
+pub use sections::{Link, Sections};
 
-/// The side of the square that each pose is drawn in, in pixels.
-const CELL_PX: f64 = 300.0;
+use super::Frame;
+use crate::matching::MatchReport;
+use crate::pose::{Mapping, PlacedLandmark};
+
 /// The side of the pose space's square, in pixels.
 const SPACE_PX: f64 = 520.0;
+/// The width of the legend, in pixels.
+const LEGEND_PX: f64 = 560.0;
 /// The free border around everything, in pixels.
 const BORDER_PX: f64 = 20.0;
 /// The height of a line of text, in pixels.
-const TEXT_PX: f64 = 14.0;
-/// The widest picture, in pixels: poses are drawn smaller beyond.
-const WIDEST_PX: f64 = 6000.0;
+const TEXT_PX: f64 = 15.0;
+/// The mismatch of a section that has the last colour of the scale.
+const MOST_COST: f64 = 3.0 * Sections::DOUBTFUL_COST;
+/// The colour of words and marks.
+const INK: Color = Color::BLACK;
 
 /// What the picture says about a pose beside its mapping.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,50 +54,91 @@ pub struct DiagramPose {
     pub at: Vec<f64>,
 }
 
-/// Draws the picture. `path` is the animation's path through the pose space, `weights` gives the weights at a place.
+/// What the picture shows.
+#[derive(Debug, Clone, Copy)]
+pub struct Diagram<'a> {
+    /// The mapping.
+    pub mapping: &'a Mapping,
+    /// How its outer rings were matched.
+    pub matching: &'a MatchReport,
+    /// The landmarks, each with a place on every pose.
+    pub landmarks: &'a [PlacedLandmark],
+    /// One entry a pose.
+    pub poses: &'a [DiagramPose],
+    /// The animation's path through the pose space.
+    pub path: &'a [Vec<f64>],
+}
+
+/// Draws the picture; `weights` gives the weights at a place of the pose space.
 ///
 /// # Errors
-/// A message if there is no pose, or as many that no picture holds them.
+/// A message if there is no pose, the parts do not fit one another, or there are so many poses that no picture holds
+/// them.
 pub fn draw(
-    mapping: &Mapping,
-    poses: &[DiagramPose],
-    path: &[Vec<f64>],
+    diagram: &Diagram,
+    sections: &Sections,
     weights: impl Fn(&[f64]) -> Option<Vec<f64>>,
 ) -> Result<Frame, String> {
-    let count = mapping.poses.len();
-    if count == 0 || poses.len() != count {
-        return Err("there is nothing to show".to_owned());
+    let count = diagram.mapping.poses.len();
+    let fits = diagram.poses.len() == count
+        && diagram.mapping.outlines.len() == count
+        && sections.links().iter().all(|link| link.at.len() == count)
+        && diagram.landmarks.iter().all(|landmark| landmark.at.len() == count);
+    if count == 0 || !fits {
+        return Err("there is nothing to show: poses, outlines and landmarks do not belong together".to_owned());
     }
-    let cell = CELL_PX.min((WIDEST_PX - 2.0 * BORDER_PX) / count as f64);
-    let width = (count as f64 * cell).max(SPACE_PX) + 2.0 * BORDER_PX;
-    let row = cell + 2.0 * TEXT_PX;
-    let height = 2.0 * row + SPACE_PX + 2.0 * TEXT_PX + 2.0 * BORDER_PX;
-    let mut canvas =
-        Canvas::new(width.ceil() as u32, height.ceil() as u32).ok_or("there are too many poses for one picture")?;
-    let fits: Vec<Fit> = mapping
-        .poses
-        .positions()
-        .iter()
-        .enumerate()
-        .map(|(pose, positions)| {
-            let corner = [BORDER_PX + pose as f64 * cell, BORDER_PX + TEXT_PX];
-            Fit::new(positions, corner, cell)
-        })
-        .collect();
-    for (pose, said) in poses.iter().enumerate() {
-        let left = BORDER_PX + pose as f64 * cell + 6.0;
-        canvas.text(&said.name, [left, BORDER_PX], TEXT_PX, pose_colour(pose, count));
+    let layout = Layout::new(diagram.mapping, legend::height(count));
+    let [width, height] = layout.size;
+    let mut canvas = Canvas::new(width, height).ok_or("there are too many poses for one picture")?;
+    let headings = [
+        "OUTLINES: EQUAL NUMBERS CORRESPOND",
+        "MESHES: ONE TRIANGULATION",
+        "POSE SPACE: WHOSE WEIGHTS COUNT WHERE",
+    ];
+    for (words, corner) in headings.into_iter().zip(layout.headings) {
+        canvas.text(words, corner, TEXT_PX, Color::from_rgba8(110, 110, 110, 255));
     }
-    outlines::draw_outlines(&mut canvas, mapping, &fits);
-    outlines::draw_meshes(&mut canvas, mapping, &fits, row);
-    pose_space::draw(
-        &mut canvas,
-        poses,
-        path,
-        &weights,
-        [BORDER_PX, BORDER_PX + 2.0 * row + TEXT_PX],
-    );
+    outlines::draw(&mut canvas, diagram, sections, &layout.outlines, layout.columns);
+    meshes::draw(&mut canvas, diagram, &layout.meshes);
+    for cells in [&layout.outlines, &layout.meshes] {
+        for (pose, (said, cell)) in diagram.poses.iter().zip(cells).enumerate() {
+            canvas.text(&said.name, cell.head(), TEXT_PX, pose_colour(pose, count));
+        }
+    }
+    pose_space::draw(&mut canvas, diagram.poses, diagram.path, &weights, layout.space);
+    legend::draw(&mut canvas, diagram, sections, layout.legend);
     Ok(canvas.into_frame())
+}
+
+/// The colour of a section by its mean mismatch: a calm blue where the outlines are alike, over orange to red.
+fn cost_colour(cost: f64) -> Color {
+    const STOPS: [[f64; 3]; 4] = [
+        [0.35, 0.55, 0.78],
+        [0.62, 0.66, 0.55],
+        [0.95, 0.6, 0.1],
+        [0.82, 0.0, 0.12],
+    ];
+    let along = (cost / MOST_COST).clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
+    let stop = (along as usize).min(STOPS.len() - 2);
+    let share = along - stop as f64;
+    let channel = |k: usize| (STOPS[stop][k] + share * (STOPS[stop + 1][k] - STOPS[stop][k])) as f32;
+    Color::from_rgba(channel(0), channel(1), channel(2), 1.0).unwrap_or(Color::BLACK)
+}
+
+/// Half the side of a landmark's square, in pixels: less if there are many.
+fn mark_size(diagram: &Diagram) -> f64 {
+    const MANY: usize = 40;
+    if diagram.landmarks.len() > MANY { 2.0 } else { 4.0 }
+}
+
+/// The colour of triangles with small angles.
+fn worst_colour() -> Color {
+    Color::from_rgba8(215, 0, 40, 255)
+}
+
+fn faint(mut colour: Color) -> Color {
+    colour.set_alpha(0.4);
+    colour
 }
 
 /// A clear colour for a pose: hues spread evenly, dark ones and light ones in turn.
@@ -95,53 +154,4 @@ fn hue(turns: f64, lightness: f64) -> Color {
         (lightness * (0.35 + 1.15 * wave)).clamp(0.0, 1.0) as f32
     };
     Color::from_rgba(channel(0.0), channel(1.0 / 3.0), channel(2.0 / 3.0), 1.0).unwrap_or(Color::BLACK)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::matching::Correspondence;
-    use crate::math::Point;
-    use crate::mesh::Topology;
-    use crate::outline::{Outline, Ring};
-    use crate::pose::{Matching, PoseSet};
-
-    #[test]
-    fn shows_two_poses() {
-        let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]
-            .map(Point::from)
-            .to_vec();
-        let outline = Outline::new(Ring::new(corners.clone()).expect("a ring"), vec![]).expect("simple");
-        let mapping = Mapping {
-            poses: PoseSet::new(
-                Topology::new(4, vec![[0, 1, 2], [0, 2, 3]]).expect("a mesh"),
-                vec![("a".to_owned(), corners.clone()), ("b".to_owned(), corners)],
-            )
-            .expect("poses"),
-            outlines: vec![outline.clone(), outline],
-            rings: vec![vec![0, 1, 2, 3]],
-            steiner: 0,
-            matching: Matching {
-                reference: 0,
-                outer: Correspondence::identity(2, 64),
-            },
-        };
-        let poses: Vec<DiagramPose> = [("a", 0.0), ("b", 1.0)]
-            .map(|(name, x)| DiagramPose {
-                name: name.to_owned(),
-                at: vec![x, 0.0],
-            })
-            .to_vec();
-        let weights = |at: &[f64]| Some(vec![1.0 - at[0], at[0]]);
-        let picture = draw(&mapping, &poses, &[vec![0.0, 0.0], vec![1.0, 0.0]], weights).expect("a picture");
-        let white = picture.pixels.iter().filter(|p| **p == [255; 4]).count();
-        assert!(white > picture.pixels.len() / 10 && white < picture.pixels.len() * 9 / 10);
-        // The left side of the map belongs to pose a, the right side to pose b.
-        let (y, left, right) = (picture.height - 40, 60, 500);
-        assert_ne!(
-            picture.pixels[y * picture.width + left],
-            picture.pixels[y * picture.width + right]
-        );
-        assert!(draw(&mapping, &poses[..1], &[], |_| None).is_err());
-    }
 }

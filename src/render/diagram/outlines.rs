@@ -1,87 +1,210 @@
-//! Outlines in correspondence, and meshes side by side.
+//! The outlines in correspondence: numbered links, salient points, landmarks, and where the match is doubtful.
 
 use tiny_skia::Color;
 
-use super::canvas::{Canvas, Fit};
-use super::{TEXT_PX, hue};
-use crate::math::Point;
-use crate::mesh::geometry;
+use super::canvas::Canvas;
+use super::labels::{Area, LEADER_PX, Labels, Need};
+use super::layout::Cell;
+use super::{Diagram, INK, Sections, cost_colour, faint, hue, mark_size};
+use crate::math::{Point, point};
 use crate::outline::ArcLength;
-use crate::pose::Mapping;
+use crate::pose::{LandmarkKind, PlacedLandmark};
 
-/// Coloured pieces of an outline.
-const PIECES: usize = 360;
-/// Numbered points of an outline.
-const NUMBERS: usize = 16;
+/// Points of a whole outline that is drawn as lines.
+const SAMPLES: f64 = 1500.0;
+/// The height of a number's line, in pixels.
+const NUMBER_PX: f64 = 13.0;
+/// The room about words, in pixels.
+const MARGIN_PX: [f64; 2] = [6.0, 4.0];
+/// How many doubtful sections of a pose are labelled.
+const LABELLED: usize = 3;
+/// The widest smoothing that a salient point survives, in perimeters, and the radii at none and at that, in pixels.
+const WIDEST_SCALE: f64 = 0.04;
+/// Salient points that survive less are not drawn: there are too many, and each means little.
+const LEAST_SCALE: f64 = 0.0095;
+const SALIENT_RADII_PX: [f64; 2] = [2.0, 9.0];
+/// A parameter this far to either side tells an outline's direction, in perimeters.
+const ASIDE: f64 = 0.004;
 
-/// The outer rings, coloured by the matching, with numbered links between neighbouring poses; holes in grey.
-pub(super) fn draw_outlines(canvas: &mut Canvas, mapping: &Mapping, fits: &[Fit]) {
-    let matching = &mapping.matching.outer;
-    let curves: Vec<ArcLength> = mapping.outlines.iter().map(|o| ArcLength::new(o.outer())).collect();
-    let reference = mapping.matching.reference;
-    // Evenly along the reference, so that neither colours nor numbers crowd.
-    let at = |pose: usize, share: f64| fits[pose].place(curves[pose].at(matching.carry(reference, pose, share)));
-    let numbered: Vec<f64> = (0..NUMBERS).map(|k| k as f64 / NUMBERS as f64).collect();
-    for &share in &numbered {
-        let link: Vec<Point> = (0..curves.len()).map(|pose| at(pose, share)).collect();
-        canvas.line(&link, 0.7, faint(hue(share, 0.6)));
+/// One pose's outline on the sheet.
+struct Placed<'a> {
+    cell: &'a Cell,
+    curve: ArcLength,
+}
+
+impl Placed<'_> {
+    fn at(&self, t: f64) -> Point {
+        self.cell.fit.place(self.curve.at(t))
     }
-    for (pose, outline) in mapping.outlines.iter().enumerate() {
-        for hole in outline.holes() {
-            let points: Vec<Point> = (0..=hole.len()).map(|k| fits[pose].place(hole.point(k))).collect();
-            canvas.line(&points, 1.0, Color::from_rgba8(120, 120, 120, 255));
-        }
-        for piece in 0..PIECES {
-            let [from, to] = [piece, piece + 1].map(|k| k as f64 / PIECES as f64);
-            // Between the two the outline's own vertices.
-            let [start, end] = [from, to].map(|share| matching.carry(reference, pose, share.rem_euclid(1.0)));
-            let length = (end - start).rem_euclid(1.0);
-            let steps = 2 + (length * 400.0) as usize;
-            let points: Vec<Point> = (0..=steps)
-                .map(|k| fits[pose].place(curves[pose].at(start + length * k as f64 / steps as f64)))
-                .collect();
-            canvas.line(&points, 2.2, hue(from, 0.6));
+
+    /// The points from one parameter on to another, not a whole turn.
+    fn between(&self, from: f64, to: f64) -> Vec<Point> {
+        let length = (to - from).rem_euclid(1.0);
+        let steps = 2 + (length * SAMPLES) as usize;
+        (0..=steps)
+            .map(|k| self.at(from + length * k as f64 / steps as f64))
+            .collect()
+    }
+
+    /// Away from the shape: outlines are positive, so the inside is a positive quarter turn from the way along.
+    fn outward(&self, t: f64) -> Point {
+        -point::perpendicular(self.at(t + ASIDE) - self.at(t - ASIDE))
+    }
+}
+
+/// Draws every outline in its cell. `columns` cells stand in a row.
+pub(super) fn draw(canvas: &mut Canvas, diagram: &Diagram, sections: &Sections, cells: &[Cell], columns: usize) {
+    let placed: Vec<Placed> = diagram
+        .mapping
+        .outlines
+        .iter()
+        .zip(cells)
+        .map(|(outline, cell)| Placed {
+            cell,
+            curve: ArcLength::new(outline.outer()),
+        })
+        .collect();
+    let share = |k: usize| k as f64 / sections.links().len().max(1) as f64;
+    for (k, link) in sections.links().iter().enumerate() {
+        let places: Vec<Point> = placed.iter().zip(&link.at).map(|(pose, t)| pose.at(*t)).collect();
+        for row in places.chunks(columns.max(1)) {
+            canvas.line(row, 0.8, faint(hue(share(k), 0.62)));
         }
     }
-    for pose in 0..curves.len() {
-        for (number, &share) in numbered.iter().enumerate() {
-            let place = at(pose, share);
-            canvas.dot(place, 3.2, hue(share, 0.5));
-            let label = [place.x + 5.0, place.y - 0.5 * TEXT_PX];
-            canvas.text(
-                &(number + 1).to_string(),
-                label,
-                0.7 * TEXT_PX,
-                Color::from_rgba8(30, 30, 30, 255),
-            );
+    for (pose, here) in placed.iter().enumerate() {
+        draw_curves(canvas, diagram, sections, here, pose);
+        let mut labels = Labels::within(here.cell.area);
+        for k in 0..(SAMPLES / 4.0) as usize {
+            labels.avoid(&[here.at(4.0 * k as f64 / SAMPLES)]);
+        }
+        draw_landmarks(canvas, diagram, here, pose, &mut labels);
+        for (k, link) in sections.links().iter().enumerate() {
+            let place = here.at(link.at[pose]);
+            if link.landmark.is_none() {
+                canvas.dot(place, 3.6, hue(share(k), 0.5));
+            }
+            labels.keep_free(Area::around(place, Point::repeat(4.0)));
+        }
+        draw_labels(canvas, diagram, sections, here, pose, &mut labels);
+    }
+}
+
+/// Holes, the outline in the colours of its sections, doubtful ones on a broad band, salient points, lines inside.
+fn draw_curves(canvas: &mut Canvas, diagram: &Diagram, sections: &Sections, here: &Placed, pose: usize) {
+    let fit = here.cell.fit;
+    for hole in diagram.mapping.outlines[pose].holes() {
+        let points: Vec<Point> = (0..=hole.len()).map(|k| fit.place(hole.point(k))).collect();
+        canvas.line(&points, 1.2, Color::from_rgba8(120, 120, 120, 255));
+    }
+    let links = sections.links();
+    let costs = sections.costs(pose);
+    let of_section = |k: usize| here.between(links[k].at[pose], links[(k + 1) % links.len()].at[pose]);
+    let banded = if pose == sections.reference() {
+        Vec::new()
+    } else {
+        sections.doubtful(pose)
+    };
+    for k in banded {
+        canvas.line(&of_section(k), 13.0, Color::from_rgba8(255, 214, 214, 255));
+    }
+    for (k, cost) in costs.iter().enumerate() {
+        canvas.line(&of_section(k), 3.0, cost_colour(*cost));
+    }
+    for landmark in diagram.landmarks.iter().filter(|l| l.kind == LandmarkKind::Line) {
+        let line: Vec<Point> = landmark.at[pose].iter().map(|p| fit.place(*p)).collect();
+        canvas.line(&line, 1.6, INK);
+    }
+    let salient = diagram.matching.poses.get(pose).map_or(&[][..], |p| &p.salient);
+    for mark in salient.iter().filter(|mark| mark.scale > LEAST_SCALE) {
+        let share = (mark.scale / WIDEST_SCALE).clamp(0.0, 1.0);
+        let radius = SALIENT_RADII_PX[0] + (SALIENT_RADII_PX[1] - SALIENT_RADII_PX[0]) * share;
+        canvas.circle(here.at(mark.parameter), radius, 1.1, Color::from_rgba8(90, 90, 90, 255));
+    }
+}
+
+/// The points of the landmarks; smaller ones if they are many.
+fn draw_landmarks(canvas: &mut Canvas, diagram: &Diagram, here: &Placed, pose: usize, labels: &mut Labels) {
+    let half = mark_size(diagram);
+    for landmark in diagram.landmarks.iter().filter(|l| l.kind != LandmarkKind::Line) {
+        for place in &landmark.at[pose] {
+            let place = here.cell.fit.place(*place);
+            canvas.square(place, half, INK);
+            labels.keep_free(Area::around(place, Point::repeat(half)));
         }
     }
 }
 
-/// The mesh on every pose, `below` pixels under its outline.
-pub(super) fn draw_meshes(canvas: &mut Canvas, mapping: &Mapping, fits: &[Fit], below: f64) {
-    let triangles = mapping.poses.topology().triangles();
-    let shift = Point::new(0.0, below);
-    for (positions, fit) in mapping.poses.positions().iter().zip(fits) {
-        let placed: Vec<Point> = positions.iter().map(|p| fit.place(*p) + shift).collect();
-        for (k, corners) in triangles.iter().enumerate() {
-            let [a, b, c] = geometry::corners(&placed, *corners);
-            // The golden ratio spreads hues so that neighbours differ; the colour is the triangle's in every pose.
-            canvas.fill(&[a, b, c], faint(hue(k as f64 * 0.618_034, 0.66)));
-        }
-        for corners in triangles {
-            let [a, b, c] = geometry::corners(&placed, *corners);
-            canvas.line(&[a, b, c, a], 0.6, Color::from_rgba8(60, 60, 60, 160));
-        }
-        for ring in &mapping.rings {
-            let mut points: Vec<Point> = ring.iter().map(|v| placed[*v]).collect();
-            points.extend(points.first().copied());
-            canvas.line(&points, 1.4, Color::from_rgba8(20, 20, 20, 255));
-        }
+/// Numbers; the doubtful sections; names, where there is room.
+fn draw_labels(
+    canvas: &mut Canvas,
+    diagram: &Diagram,
+    sections: &Sections,
+    here: &Placed,
+    pose: usize,
+    labels: &mut Labels,
+) {
+    let mut pen = Pen { canvas, labels };
+    let links = sections.links();
+    for (k, link) in links.iter().enumerate() {
+        let t = link.at[pose];
+        pen.label(&(k + 1).to_string(), here.at(t), here.outward(t), INK, Need::Must);
+    }
+    let doubtful = if pose == sections.reference() {
+        Vec::new()
+    } else {
+        sections.doubtful(pose)
+    };
+    for k in doubtful.into_iter().take(LABELLED) {
+        let (from, to) = (links[k].at[pose], links[(k + 1) % links.len()].at[pose]);
+        let middle = from + 0.5 * (to - from).rem_euclid(1.0);
+        let (first, second) = sections.numbers(k);
+        let words = format!("{first} TO {second}: {:.1}", sections.costs(pose)[k]);
+        let (place, outward) = (here.at(middle), here.outward(middle));
+        pen.label(&words, place, outward, cost_colour(f64::INFINITY), Need::Must);
+    }
+    for landmark in diagram.landmarks {
+        let places = &landmark.at[pose];
+        let Some(middle) = places.get(places.len() / 2).map(|p| here.cell.fit.place(*p)) else {
+            continue;
+        };
+        let wanted = if landmark.kind == LandmarkKind::OnOutline {
+            here.outward(here.curve.nearest(places[0]).0)
+        } else {
+            Point::new(1.0, 0.0)
+        };
+        pen.label(&name_on(landmark, pose), middle, wanted, name_colour(), Need::IfFree);
     }
 }
 
-fn faint(mut colour: Color) -> Color {
-    colour.set_alpha(0.45);
-    colour
+fn name_colour() -> Color {
+    Color::from_rgba8(20, 60, 150, 255)
+}
+
+/// A landmark's name; in brackets where the program placed it.
+fn name_on(landmark: &PlacedLandmark, pose: usize) -> String {
+    if landmark.given.get(pose).copied().unwrap_or(false) {
+        landmark.name.clone()
+    } else {
+        format!("({})", landmark.name)
+    }
+}
+
+struct Pen<'a> {
+    canvas: &'a mut Canvas,
+    labels: &'a mut Labels,
+}
+
+impl Pen<'_> {
+    fn label(&mut self, words: &str, place: Point, wanted: Point, colour: Color, need: Need) {
+        let size = Canvas::text_size(words, NUMBER_PX) + Point::from(MARGIN_PX);
+        let Some(placed) = self.labels.place(place, size, wanted, need) else {
+            return;
+        };
+        if placed.distance > LEADER_PX {
+            let nearest = place.sup(&placed.area.low).inf(&placed.area.high);
+            let grey = Color::from_rgba8(130, 130, 130, 255);
+            self.canvas.line(&[place, nearest], 0.8, grey);
+        }
+        self.canvas.text_around(words, placed.area.middle(), NUMBER_PX, colour);
+    }
 }

@@ -3,6 +3,7 @@
 use tiny_skia::Color;
 
 use super::canvas::{Canvas, Fit};
+use super::labels::{Area, Labels, Need};
 use super::{DiagramPose, SPACE_PX, TEXT_PX, pose_colour};
 use crate::math::Point;
 
@@ -64,15 +65,22 @@ pub(super) fn draw(
     let along: Vec<Point> = path.iter().map(|at| fit.place(plane(at))).collect();
     canvas.line(&along, 3.0, Color::from_rgba8(255, 255, 255, 160));
     canvas.line(&along, 1.2, Color::from_rgba8(40, 40, 40, 220));
-    for (pose, (said, place)) in poses.iter().zip(&places).enumerate() {
+    let corner = Point::from(corner);
+    let mut labels = Labels::within(Area {
+        low: corner,
+        high: corner + Point::repeat(SPACE_PX),
+    });
+    for (pose, place) in places.iter().enumerate() {
         let place = fit.place(*place);
         canvas.dot(place, 6.0, pose_colour(pose, poses.len()));
-        canvas.text(
-            &said.name,
-            [place.x + 9.0, place.y - 0.4 * TEXT_PX],
-            TEXT_PX,
-            Color::BLACK,
-        );
+        labels.keep_free(Area::around(place, Point::repeat(6.0)));
+    }
+    labels.avoid(&along);
+    for (said, place) in poses.iter().zip(&places) {
+        let size = Canvas::text_size(&said.name, TEXT_PX) + Point::repeat(4.0);
+        if let Some(placed) = labels.place(fit.place(*place), size, Point::new(1.0, 0.0), Need::Must) {
+            canvas.text_around(&said.name, placed.area.middle(), TEXT_PX, Color::BLACK);
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::math::Point;
 
 /// Each glyph on a grid of 5 x 7 places: strokes separated by spaces, each a row of places "xy".
-const GLYPHS: [(char, &str); 40] = [
+const GLYPHS: [(char, &str); 51] = [
     ('A', "062046 1434"),
     ('B', "00063645443303 0030414233"),
     ('C', "4130100105163645"),
@@ -43,6 +43,17 @@ const GLYPHS: [(char, &str); 40] = [
     ('-', "1333"),
     ('_', "0646"),
     ('.', "2526"),
+    (',', "2516"),
+    (':', "2122 2526"),
+    (';', "2122 2516"),
+    ('\'', "2022"),
+    ('(', "30121436"),
+    (')', "10323416"),
+    ('/', "4006"),
+    ('%', "4006 0010110100 3545463635"),
+    ('+', "1333 2224"),
+    ('=', "1232 1434"),
+    ('<', "300336"),
     (' ', ""),
 ];
 
@@ -50,6 +61,13 @@ const GLYPHS: [(char, &str); 40] = [
 const UNKNOWN: &str = "0040460600";
 /// The distance from one letter to the next, in letter heights.
 const ADVANCE: f64 = 1.0;
+
+/// How wide and high words are, in letter heights.
+pub(super) fn size(words: &str) -> Point {
+    let letters = words.chars().flat_map(char::to_uppercase).count();
+    // The last letter ends four sixths into its cell.
+    Point::new((letters as f64 * ADVANCE - 2.0 / 6.0).max(0.0), 1.0)
+}
 
 /// The strokes of some words, letters one unit high, from the origin down and to the right.
 pub(super) fn strokes(words: &str) -> Vec<Vec<Point>> {

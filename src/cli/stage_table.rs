@@ -1,0 +1,187 @@
+//! What the stages of a mapping did and how long each took, as a table.
+
+use std::time::{Duration, Instant};
+
+use inbetween::input::Drawing;
+use inbetween::pipeline::{MappingReport, Stage};
+use inbetween::pose::Mapping;
+
+/// Landmarks named in a pose's line; the others are counted.
+const NAMED: usize = 6;
+
+/// Looks at the clock whenever a stage begins.
+pub(crate) struct StageClock {
+    begun: Vec<(String, Instant)>,
+    end: Option<Instant>,
+}
+
+impl StageClock {
+    /// Starts with the reading of the drawings.
+    pub(crate) fn start() -> Self {
+        Self {
+            begun: vec![("input".to_owned(), Instant::now())],
+            end: None,
+        }
+    }
+
+    /// Another stage begins.
+    pub(crate) fn begins(&mut self, stage: Stage) {
+        self.begun.push((stage.to_string(), Instant::now()));
+    }
+
+    /// The last one is done.
+    pub(crate) fn stop(&mut self) {
+        self.end = Some(Instant::now());
+    }
+
+    /// Every stage with its time, and the total.
+    fn times(&self) -> Vec<(String, Duration)> {
+        let end = self.end.unwrap_or_else(Instant::now);
+        let ends = self.begun.iter().skip(1).map(|(_, at)| *at).chain([end]);
+        let mut times: Vec<(String, Duration)> = self
+            .begun
+            .iter()
+            .zip(ends)
+            .map(|((name, from), to)| (name.clone(), to.duration_since(*from)))
+            .collect();
+        times.push(("total".to_owned(), times.iter().map(|(_, time)| *time).sum()));
+        times
+    }
+}
+
+/// The table, one line an entry: stages with their times and numbers, then the match of every pose.
+pub(crate) fn lines(
+    drawings: &[Drawing],
+    mapping: &Mapping,
+    report: &MappingReport,
+    clock: &StageClock,
+) -> Vec<String> {
+    let rows: Vec<[String; 3]> = clock
+        .times()
+        .into_iter()
+        .map(|(name, time)| {
+            let numbers = numbers_of(&name, drawings, mapping, report);
+            [name, format!("{:.1}", time.as_secs_f64() * 1e3), numbers]
+        })
+        .collect();
+    let mut lines = aligned(["stage", "ms", "result"], &rows);
+    let names = mapping.poses.names();
+    let matches: Vec<[String; 3]> = names
+        .iter()
+        .enumerate()
+        .map(|(pose, name)| {
+            let matched = &report.matching.poses[pose];
+            let cost = if pose == mapping.matching.reference {
+                "-".to_owned()
+            } else {
+                format!("{:.2}", matched.cost)
+            };
+            let used = matched.landmarks.iter().filter_map(|k| report.landmarks.get(*k));
+            let mut used: Vec<&str> = used.map(|landmark| landmark.name.as_str()).collect();
+            let more = used.len().saturating_sub(NAMED);
+            used.truncate(NAMED);
+            let mut through = if used.is_empty() {
+                "-".to_owned()
+            } else {
+                used.join(", ")
+            };
+            if more > 0 {
+                through.push_str(&format!(" and {more} more"));
+            }
+            [name.clone(), cost, through]
+        })
+        .collect();
+    lines.push(String::new());
+    lines.extend(aligned(["pose", "cost", "matched through the landmarks"], &matches));
+    lines
+}
+
+/// What a stage has to say.
+fn numbers_of(stage: &str, drawings: &[Drawing], mapping: &Mapping, report: &MappingReport) -> String {
+    let largest = |values: &[f64]| 100.0 * values.iter().copied().fold(0.0, f64::max);
+    if stage == "input" {
+        let rings = drawings.iter().flat_map(|drawing| drawing.outline.rings());
+        let points: usize = rings.map(|ring| ring.len()).sum();
+        let holes = mapping.rings.len().saturating_sub(1);
+        return format!("{} drawings, {points} outline points, {holes} holes", drawings.len());
+    }
+    if stage == Stage::Matching.to_string() {
+        let costs = report.matching.poses.iter().map(|pose| pose.cost);
+        let reference = &mapping.poses.names()[mapping.matching.reference];
+        let worst = costs.fold(0.0, f64::max);
+        return format!("to '{reference}', cost at most {worst:.2}");
+    }
+    if stage == Stage::Simplification.to_string() {
+        let of = &report.simplification;
+        return format!(
+            "{} to {} vertices, at most {:.2} % of the diagonal off, area at most {:.1} % larger",
+            of.tuples,
+            of.vertices,
+            largest(&of.deviation),
+            largest(&of.excess_area)
+        );
+    }
+    if stage == Stage::Triangulation.to_string() {
+        let of = &report.triangulation;
+        return format!(
+            "{} Steiner points: {} on bridges, {} single, {} on link paths, {} from overlays, {} taken out",
+            mapping.steiner, of.bridge, of.single, of.link, of.overlay, of.decimated
+        );
+    }
+    if stage == Stage::Refinement.to_string() {
+        let of = &report.refinement;
+        let quality = &report.quality;
+        return format!(
+            "{} splits, {} flips; smallest angle {:.1} degrees, 5th percentile {:.1}; stretch {:.2}, largest {:.1}",
+            of.splits,
+            of.flips,
+            quality.smallest_angle_deg,
+            quality.low_angle_deg,
+            quality.median_stretch,
+            quality.largest_stretch
+        );
+    }
+    let topology = mapping.poses.topology();
+    format!(
+        "{} vertices, {} triangles",
+        topology.vertex_count(),
+        topology.triangles().len()
+    )
+}
+
+/// Three columns: words, a number, words.
+fn aligned(head: [&str; 3], rows: &[[String; 3]]) -> Vec<String> {
+    let width = |column: usize| {
+        let widths = rows.iter().map(|row| row[column].chars().count());
+        widths.fold(head[column].len(), usize::max)
+    };
+    let (first, second) = (width(0), width(1));
+    let line = |[a, b, c]: [&str; 3]| format!("{a:first$}  {b:>second$}  {c}").trim_end().to_owned();
+    let mut lines = vec![line(head)];
+    lines.extend(rows.iter().map(|[a, b, c]| line([a, b, c])));
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_as_wide_as_their_longest_entry() {
+        let rows = [["a", "1.5", "x"], ["long name", "12.0", ""]].map(|row| row.map(str::to_owned));
+        let expected = ["stage        ms  result", "a           1.5  x", "long name  12.0"];
+        assert_eq!(aligned(["stage", "ms", "result"], &rows), expected);
+    }
+
+    #[test]
+    fn times_are_between_beginnings_and_add_up() {
+        let start = Instant::now();
+        let at = |ms: u64| start + Duration::from_millis(ms);
+        let clock = StageClock {
+            begun: vec![("input".to_owned(), start), ("matching".to_owned(), at(3))],
+            end: Some(at(10)),
+        };
+        let times: Vec<u128> = clock.times().iter().map(|(_, time)| time.as_millis()).collect();
+        assert_eq!(times, [3, 7, 10]);
+    }
+}

@@ -1,0 +1,53 @@
+//! What every stage of the mapping has to say.
+
+use crate::compatible::{RefineReport, SimplifyReport, TriangulateReport};
+use crate::matching::MatchReport;
+use crate::pose::{MeshQuality, PlacedLandmark};
+
+/// A stage of [`map_drawings`](super::map_drawings).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Stage {
+    /// Which point of every outline corresponds to which.
+    Matching,
+    /// Polygons with corresponding vertices.
+    Simplification,
+    /// One triangulation of the polygons.
+    Triangulation,
+    /// More vertices and better triangles.
+    Refinement,
+}
+
+impl std::fmt::Display for Stage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Matching => "matching",
+            Self::Simplification => "simplification",
+            Self::Triangulation => "triangulation",
+            Self::Refinement => "refinement",
+        })
+    }
+}
+
+/// How a mapping came about: the report of every stage.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct MappingReport {
+    /// What the artist should know: one line a remark, each naming its pose.
+    pub notes: Vec<String>,
+    /// How the outer rings were matched. The numbers in [`PoseMatch::landmarks`](crate::matching::PoseMatch::landmarks)
+    /// are places in `landmarks`.
+    pub matching: MatchReport,
+    /// How the holes were matched, one report a hole.
+    pub holes: Vec<MatchReport>,
+    /// The landmarks on every pose: those on the outline, then those inside, then lines.
+    pub landmarks: Vec<PlacedLandmark>,
+    /// Corresponding vertices before and after, and how well the polygons fit.
+    pub simplification: SimplifyReport,
+    /// Steiner vertices by the way they were found.
+    pub triangulation: TriangulateReport,
+    /// What the refinement changed.
+    pub refinement: RefineReport,
+    /// Angles and stretches of the finished mesh.
+    pub quality: MeshQuality,
+}
