@@ -43,6 +43,9 @@ const MIRROR_MARGIN: f64 = 0.7;
 /// Rounds in which every pose is matched again. After three, hardly any changes what it corresponds to.
 const JOINT_ROUNDS: usize = 3;
 
+/// With this many landmarks in common their cyclic order says which way a pose faces.
+const ORIENTING_LANDMARKS: usize = 3;
+
 /// How outlines are matched.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MatchOptions {
@@ -89,7 +92,7 @@ pub struct PoseMatch {
     pub cost: f64,
     /// The same by row of the correspondence, as a density: a match is doubtful where it is high.
     pub mismatch: Vec<f64>,
-    /// Whether its reflection would match clearly better.
+    /// Whether its reflection would match clearly better. Not asked where three landmarks or more say how it faces.
     pub looks_mirrored: bool,
     /// How much worse its reflection fits the reference than itself, as a ratio of distances; 1 for the reference, or if not looked for.
     pub reflection_ratio: f64,
@@ -152,7 +155,12 @@ pub fn match_rings(rings: &[Ring], landmarks: &[Landmark], options: &MatchOption
     let poses = (0..count)
         .into_par_iter()
         .map(|pose| {
-            let reflection_ratio = if pose == reference || options.mirror_hints == MirrorHints::Skip {
+            let said = given
+                .iter()
+                .filter(|l| l.at[reference].is_some() && l.at[pose].is_some())
+                .count();
+            let skip = options.mirror_hints == MirrorHints::Skip || said >= ORIENTING_LANDMARKS;
+            let reflection_ratio = if pose == reference || skip {
                 1.0
             } else {
                 reflection_ratio(&forms[reference], &rings[pose], &forms[pose])

@@ -166,6 +166,19 @@ fn a_reflected_figure_is_hinted_at() {
 }
 
 #[test]
+fn landmarks_in_order_say_that_a_figure_is_not_mirrored() {
+    let mirrored = figure(300, 0.1)
+        .map(|p| Point::new(-p.x, p.y))
+        .expect("a ring")
+        .reversed();
+    let landmarks =
+        [("a", 0.1, 0.2), ("b", 0.4, 0.5), ("c", 0.7, 0.8)].map(|(name, s, t)| landmark(name, &[Some(s), Some(t)]));
+    let rings = [figure(300, 0.0), mirrored];
+    assert!(matched(&rings, &landmarks[..2]).report.poses[1].looks_mirrored);
+    assert!(!matched(&rings, &landmarks).report.poses[1].looks_mirrored);
+}
+
+#[test]
 fn symmetric_shapes_are_not_turned() {
     let star = |points: usize| {
         Ring::new((0..points).map(|k| {
