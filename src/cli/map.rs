@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     /// The layer, in a scene with layers
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
-    /// Also say what each stage did and how long it took, on standard error
+    /// Say what each stage did and how long it took, on standard error, instead of the summary
     #[arg(long)]
     report: bool,
 }

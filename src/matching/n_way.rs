@@ -40,8 +40,9 @@ const MIRROR_COST_MARGIN: f32 = 1.05;
 /// A pose looks mirrored if its reflection is nearer to the reference by this factor.
 const MIRROR_MARGIN: f64 = 0.7;
 
-/// Rounds in which every pose is matched again. After three, hardly any changes what it corresponds to.
-const JOINT_ROUNDS: usize = 3;
+/// Rounds in which every pose is matched again to all others. More gain nothing: of poses that cannot agree, now these win,
+/// now those.
+const JOINT_ROUNDS: usize = 1;
 
 /// With this many landmarks in common their cyclic order says which way a pose faces.
 const ORIENTING_LANDMARKS: usize = 3;
@@ -105,7 +106,7 @@ pub struct PoseMatch {
 /// Matches N closed curves.
 ///
 /// The correspondence has at least 512 rows; each landmark is a row. It does not depend on where the rings start, on their
-/// place, size or rotation (but for the tie-break between matches of a rotationally symmetric shape, which takes the
+/// place, size or rotation (but for what rounding makes of them, about 1e-4 of the perimeter, and for the tie-break between matches of a rotationally symmetric shape, which takes the
 /// least rotation), nor, the reference kept, on the order of the poses. All rings have to run the same way.
 ///
 /// # Errors
@@ -175,7 +176,9 @@ pub fn match_rings(rings: &[Ring], landmarks: &[Landmark], options: &MatchOption
                 looks_mirrored: reflection_ratio < MIRROR_MARGIN,
                 reflection_ratio,
                 salient: forms[pose].salient.clone(),
-                landmarks: (0..given.len()).filter(|k| given[*k].at[pose].is_some()).collect(),
+                landmarks: (0..given.len())
+                    .filter(|k| given[*k].at[pose].is_some() && landmarks[*k].at[reference].is_some())
+                    .collect(),
             }
         })
         .collect();
@@ -280,12 +283,12 @@ fn carry_to_reference(forms: &[Form], reference: usize, landmarks: &mut [Landmar
             continue;
         }
         let wanted: Vec<usize> = having.iter().map(|(pose, _)| *pose).collect();
-        let (frame, matches) = match_some(forms, reference, landmarks, &wanted)?;
+        let StarMatch { frame, matches, .. } = match_some(forms, reference, landmarks, &wanted)?;
         let places: Vec<f64> = having
             .iter()
             .filter_map(|(pose, t)| {
                 let matched = matches[*pose].as_ref()?;
-                Some(CyclicMap::through(matched.parameters.clone(), frame.clone()).at(*t))
+                Some(CyclicMap::through(matched.parameters.clone(), frame.rows.clone()).at(*t))
             })
             .collect();
         // The mean of nearby places of a circle, relative to the first of them.
@@ -303,16 +306,25 @@ type Matches = (Vec<f64>, Vec<Option<PairMatch>>);
 
 fn match_all(forms: &[Form], reference: usize, landmarks: &[Landmark]) -> Result<Matches, MatchError> {
     let all: Vec<usize> = (0..forms.len()).collect();
-    match_some(forms, reference, landmarks, &all)
+    let mut matched = match_some(forms, reference, landmarks, &all)?;
+    match_jointly(forms, reference, &mut matched);
+    Ok((matched.frame.rows, matched.matches))
 }
 
-/// The reference's parameters by row, and the matches of some poses to them; the reference itself has none.
+/// Matches of some poses to the reference, which has none itself.
+struct StarMatch {
+    frame: Frame,
+    pins: Vec<Vec<Pin>>,
+    matches: Vec<Option<PairMatch>>,
+}
+
+/// Matches some poses to the reference.
 fn match_some(
     forms: &[Form],
     reference: usize,
     landmarks: &[Landmark],
     wanted: &[usize],
-) -> Result<Matches, MatchError> {
+) -> Result<StarMatch, MatchError> {
     let mut placed: Vec<f64> = landmarks.iter().filter_map(|l| l.at[reference]).collect();
     placed.sort_by(f64::total_cmp);
     let frame = Frame::new(&forms[reference], &placed);
@@ -320,7 +332,7 @@ fn match_some(
         .map(|pose| pins(&frame, reference, landmarks, pose))
         .collect();
     let model = Model::new(vec![(&forms[reference], &frame.rows)]);
-    let mut matches = (0..forms.len())
+    let matches = (0..forms.len())
         .into_par_iter()
         .map(|pose| {
             if pose == reference || !wanted.contains(&pose) {
@@ -331,19 +343,13 @@ fn match_some(
                 .map(Some)
         })
         .collect::<Result<Vec<_>, MatchError>>()?;
-    match_jointly(forms, reference, &frame, &pins, &mut matches);
-    Ok((frame.rows, matches))
+    Ok(StarMatch { frame, pins, matches })
 }
 
 /// Matches every pose again to all others as they stand, the reference among them, the worst matched first. One after the
 /// other: of two poses that disagree, only one has to move.
-fn match_jointly(
-    forms: &[Form],
-    reference: usize,
-    frame: &Frame,
-    pins: &[Vec<Pin>],
-    matches: &mut [Option<PairMatch>],
-) {
+fn match_jointly(forms: &[Form], reference: usize, matched: &mut StarMatch) {
+    let StarMatch { frame, pins, matches } = matched;
     let mut order: Vec<(f64, usize)> = matches
         .iter()
         .enumerate()

@@ -124,16 +124,22 @@ impl Landmarks {
     /// The number of an outline landmark, which may be there already.
     fn on_outline_at(&mut self, landmark: Landmark) -> usize {
         let is_same = |other: &Landmark| {
-            other.at.iter().zip(&landmark.at).all(|(a, b)| match (a, b) {
-                (Some(a), Some(b)) => (a - b - (a - b).round()).abs() < SAME_PLACE,
-                (None, None) => true,
-                _ => false,
-            })
+            let mut shared = other
+                .at
+                .iter()
+                .zip(&landmark.at)
+                .filter_map(|(a, b)| Some((*a)? - (*b)?))
+                .peekable();
+            shared.peek().is_some() && shared.all(|gap| (gap - gap.round()).abs() < SAME_PLACE)
         };
-        self.on_outline.iter().position(is_same).unwrap_or_else(|| {
+        let Some(number) = self.on_outline.iter().position(is_same) else {
             self.on_outline.push(landmark);
-            self.on_outline.len() - 1
-        })
+            return self.on_outline.len() - 1;
+        };
+        for (kept, also) in self.on_outline[number].at.iter_mut().zip(landmark.at) {
+            *kept = kept.or(also);
+        }
+        number
     }
 
     /// All landmarks on every pose of the finished mesh: those on the outline, points inside, lines. `anchors` are the places

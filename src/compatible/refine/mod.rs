@@ -5,10 +5,10 @@
 //! Source: NWM 3.1 (angle-based smoothing and compatible flips, after Surazsky and Gotsman 2004); the distortion step
 //! is ours.
 //!
-//! 1. Edges are split, longest first, boundary edges too, until none is longer than asked in the poses' mean; after
+//! 1. Edges are split, longest first, boundary edges too, until none is longer than asked in nearly any pose; after
 //!    each halving of the length, edges are flipped and vertices smoothed ([`split`], [`flip`], [`smooth`]).
-//! 2. The interior vertices of every pose move so that the triangles differ as little as possible between poses while
-//!    staying well shaped ([`distortion`]); flips follow.
+//! 2. After each halving, too, the interior vertices of every pose move so that the triangles differ as little as possible
+//!    between poses while staying well shaped ([`distortion`]); flips follow.
 //! 3. Where an angle is still small, the vertices around it move so that the smallest angle there grows ([`widen`]).
 //!
 //! Differences from the paper: it smooths and flips only. Splitting gives bending room to look rigid; minimising the
@@ -38,7 +38,8 @@ use star::Stars;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct RefineOptions {
-    /// Edges longer than this are split, as a fraction of the pose's diagonal, in the mean over the poses. Default 0.05.
+    /// Edges longer than this are split, as a fraction of the pose's diagonal, in the power mean over the poses with
+    /// exponent 16: nearly in any. Default 0.05.
     pub edge_length: f64,
     /// Angles below this are widened where they can be, in degrees. Default 12.
     pub smallest_angle_deg: f64,

@@ -31,7 +31,7 @@ pub(super) fn split_long_edges(mesh: &mut EditableMesh, curves: &mut Curves, dia
             .triangles()
             .flat_map(|(_, triangle)| crate::mesh::directed_edges(triangle))
             .filter(|&(a, b)| a < b || on_boundary.contains_key(&(a, b)))
-            .map(|(a, b)| (mean_length(mesh, diagonals, a, b), a, b))
+            .map(|(a, b)| (power_mean_length(mesh, diagonals, a, b), a, b))
             .filter(|edge| edge.0 > length)
             .collect();
         if long.is_empty() {
@@ -70,7 +70,7 @@ pub(super) fn split_long_edges(mesh: &mut EditableMesh, curves: &mut Curves, dia
     }
 }
 
-fn mean_length(mesh: &EditableMesh, diagonals: &[f64], a: usize, b: usize) -> f64 {
+fn power_mean_length(mesh: &EditableMesh, diagonals: &[f64], a: usize, b: usize) -> f64 {
     let powers = mesh
         .positions
         .iter()
@@ -105,4 +105,35 @@ fn split_edge(mesh: &mut EditableMesh, a: usize, b: usize) -> Option<usize> {
         mesh.add([middle, to, apex]);
     }
     Some(middle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_edge_that_is_long_in_one_pose_only_is_split() {
+        let square = |width: f64| {
+            [[0.0, 0.0], [width, 0.0], [width, 0.04], [0.0, 0.04]]
+                .map(Point::from)
+                .to_vec()
+        };
+        let mut positions = vec![square(0.04); 7];
+        positions.push(square(0.2));
+        let mut mesh = EditableMesh::new(positions, &[[0, 1, 2], [0, 2, 3]]);
+        let mut curves = Curves {
+            rings: vec![vec![0, 1, 2, 3]],
+            landmarks: Vec::new(),
+            paths: Vec::new(),
+        };
+        split_long_edges(&mut mesh, &mut curves, &[1.0; 8], 0.08);
+        let longest = |pose: usize| {
+            let edges = mesh.triangles().flat_map(|(_, t)| crate::mesh::directed_edges(t));
+            let places = &mesh.positions[pose];
+            edges.map(|(a, b)| (places[b] - places[a]).norm()).fold(0.0, f64::max)
+        };
+        // The mean over the poses of every edge is within the length from the start.
+        assert!(longest(7) < 0.1, "{}", longest(7));
+        assert!(curves.rings[0].len() > 4);
+    }
 }

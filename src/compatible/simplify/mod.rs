@@ -16,7 +16,7 @@
 //! stuck (convex in one pose, reflex in another). The first step is ours: it makes several times fewer tuples.
 //!
 //! A long thin shape may have a diagonal of a hundred of its widths; of such a shape the tolerance is taken relative to
-//! 22 mean half-widths (area over perimeter) where that is less than the diagonal.
+//! 16 mean half-widths (area over perimeter) where that is less than the diagonal.
 //!
 //! Guarantee: each polygon is simple and contains its outline but for rounding of merged vertices (about 1e-14 of the
 //! diagonal); landmark tuples survive. Cost O(n log n) in the number of outline points n, for outlines whose edges are
@@ -130,7 +130,7 @@ const MERGE_DISTANCE: f64 = 1e-3;
 
 /// A shape is thin if its diagonal exceeds this many of its mean half-widths; its deviation is then measured against
 /// those instead, or the polygon would be half as wide again as the shape. With the default tolerance it may deviate by
-/// 0.44 half-widths.
+/// 0.32 half-widths.
 const THIN_SHAPE: f64 = 16.0;
 
 /// Area over perimeter: half the width of a long strip, a quarter of the diameter of a disc.

@@ -8,7 +8,8 @@
 //! pieces of bounded size only.
 //!
 //! Larger pieces are divided along one diagonal after another ([`balanced_diagonal`]), each of which is proven to take
-//! part in a complete triangulation if there is one: O(m^2) to choose, and m^3 / 64 operations on words to prove.
+//! part in a complete triangulation if there is one (up to [`LARGEST_EXHAUSTIVE`] vertices): O(m^2) to choose, and m^3 / 64
+//! operations on words to prove.
 
 use super::visibility::Relation;
 

@@ -64,6 +64,8 @@ pub(super) struct Resolver<'a> {
     /// and their numbers are not used again, so a polygon stands for its patch.
     failed: BTreeMap<Vec<usize>, usize>,
     work: usize,
+    /// Whether a patch was left because of the work.
+    is_exhausted: bool,
     state: u64,
 }
 
@@ -73,6 +75,7 @@ impl<'a> Resolver<'a> {
             kept,
             failed: BTreeMap::new(),
             work: 0,
+            is_exhausted: false,
             state: 0,
         }
     }
@@ -105,7 +108,7 @@ impl<'a> Resolver<'a> {
                 }
                 vertex += 1;
             }
-            if saved == before {
+            if saved == before || self.is_exhausted {
                 break;
             }
         }
@@ -133,7 +136,7 @@ impl<'a> Resolver<'a> {
                 self.resolve_patch(mesh, patch, equal, variant)
             });
         }
-        (self.work < WORK).then_some(saved)
+        (!self.is_exhausted).then_some(saved)
     }
 
     /// A number that looks random: a fixed linear congruential sequence (Knuth's MMIX constants).
@@ -215,7 +218,11 @@ impl<'a> Resolver<'a> {
         let Patch { ring, inner, triangles } = patch;
         let work = ring.len().pow(3) * mesh.pose_count();
         let known = variant == 0 && self.failed.get(&ring).is_some_and(|&failed| failed >= allowance);
-        if known || ring.len() > LARGEST_RING || self.work + work > WORK {
+        if known || ring.len() > LARGEST_RING {
+            return 0;
+        }
+        if self.work + work > WORK {
+            self.is_exhausted = true;
             return 0;
         }
         self.work += work;
