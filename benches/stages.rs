@@ -3,6 +3,7 @@
 //! - `stages`: matching, simplification, triangulation, refinement and one blended frame, on outlines of 100 to 2000
 //!   points in 4 poses, and of 500 points in 2 to 16. The shapes are wavy discs, each pose with its own phase and depth
 //!   of waves, so that matching and triangulation have real work to do.
+//! - `mesh sizes`: triangulation of polygons of 50 to 400 vertices, and refinement to finer edges, both in 4 poses.
 //! - `pixels to mesh`: a figure with arms and legs in 4 postures, drawn in memory, with about 1000 outline points each;
 //!   the whole way, then every stage of it.
 //!
@@ -165,6 +166,28 @@ fn stages(criterion: &mut Criterion) {
     }
 }
 
+/// Simplification leaves about 30 vertices of a wavy disc, however many points it has. What the two stages after it cost
+/// on larger polygons and meshes is measured here: polygons as they are, and finer edges.
+fn mesh_sizes(criterion: &mut Criterion) {
+    let mut group = brief(criterion, "mesh sizes");
+    for vertices in [50, 100, 200, 400] {
+        let polygons: Vec<Outline> = (0..4).map(|pose| wavy(vertices, pose, 4)).collect();
+        group.bench_function(format!("triangulate/{vertices} vertices x 4 poses"), |b| {
+            b.iter(|| triangulate(&polygons, &[]));
+        });
+    }
+    let polygons: Vec<Outline> = (0..4).map(|pose| wavy(50, pose, 4)).collect();
+    let (mesh, _) = triangulate(&polygons, &[]).expect("triangulated");
+    for edge_length in [0.08, 0.04, 0.02] {
+        let options = RefineOptions::default().with_edge_length(edge_length);
+        let (refined, _) = refine(&mesh, &options).expect("refined");
+        let vertices = refined.positions[0].len();
+        group.bench_function(format!("refine/to {vertices} vertices x 4 poses"), |b| {
+            b.iter(|| refine(&mesh, &options));
+        });
+    }
+}
+
 fn whole(criterion: &mut Criterion) {
     let drawings: Vec<Vec<u8>> = (0..4).map(figure).collect();
     let outlines: Vec<Outline> = drawings.iter().map(|bytes| outline_of(bytes)).collect();
@@ -180,6 +203,7 @@ fn on_one_thread(criterion: &mut Criterion) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread();
     pool.build_global().expect("no pool before this one");
     whole(criterion);
+    mesh_sizes(criterion);
     stages(criterion);
 }
 
