@@ -93,6 +93,7 @@ fn outline_of(bytes: &[u8]) -> Outline {
 }
 
 /// Measures every stage of the mapping of `outlines`, each on what the one before it hands on.
+#[expect(clippy::print_stdout, reason = "a time means little without the sizes it belongs to")]
 fn mapping_stages(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, outlines: &[Outline]) -> CompatibleMesh {
     let rings: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
     let options = MatchOptions::default();
