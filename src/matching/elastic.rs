@@ -195,6 +195,11 @@ pub(super) fn cheapest_path(table: &MismatchTable, start: usize, band: &[(usize,
     let row_lengths = step_lengths(|k| table.row_parameter(k), rows, 1);
     let column_lengths = step_lengths(|k| table.column_parameter(k), columns, TURNS);
 
+    // Equal but for rounding.
+    let is_even = column_lengths[1]
+        .iter()
+        .all(|length| (length - column_lengths[1][0]).abs() < 1e-5 * length);
+
     let mut forced = table.forced.iter().copied().peekable();
     // A step may not jump over a row that is forced.
     let mut earliest = 0;
@@ -223,20 +228,15 @@ pub(super) fn cheapest_path(table: &MismatchTable, start: usize, band: &[(usize,
             let at = |inner: usize| &table.mismatches(i - inner * a / divisions)[span(inner * b / divisions)];
             let share = 0.5 / divisions as f32;
             let step = index as u32;
+            let mut lengths = Lengths { ds1, ds2, share };
+            if is_even {
+                lengths.ds2 = &ds2[..1];
+            }
             match divisions {
-                1 => try_step(costs, chosen, before, ds1, ds2, share, step, [at(0)]),
-                2 => try_step(costs, chosen, before, ds1, ds2, share, step, [at(0), at(1)]),
-                3 => try_step(costs, chosen, before, ds1, ds2, share, step, [at(0), at(1), at(2)]),
-                _ => try_step(
-                    costs,
-                    chosen,
-                    before,
-                    ds1,
-                    ds2,
-                    share,
-                    step,
-                    [at(0), at(1), at(2), at(3)],
-                ),
+                1 => try_step(costs, chosen, before, lengths, step, [at(0)]),
+                2 => try_step(costs, chosen, before, lengths, step, [at(0), at(1)]),
+                3 => try_step(costs, chosen, before, lengths, step, [at(0), at(1), at(2)]),
+                _ => try_step(costs, chosen, before, lengths, step, [at(0), at(1), at(2), at(3)]),
             }
         }
         if forced.peek() == Some(&i) {
@@ -261,32 +261,48 @@ pub(super) fn cheapest_path(table: &MismatchTable, start: usize, band: &[(usize,
     Some(Path { nodes, cost: path_cost })
 }
 
+/// Lengths of one kind of step in one row.
+#[derive(Clone, Copy)]
+struct Lengths<'a> {
+    ds1: f32,
+    /// By column, or one for all.
+    ds2: &'a [f32],
+    /// What the sum of the mismatches along the step counts, per length.
+    share: f32,
+}
+
 /// Lowers `costs` where coming by one kind of step is cheaper, and notes the step there. All slices run over the same
 /// columns.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "the slices of one inner loop, which a struct would only rename"
-)]
 fn try_step<const N: usize>(
     costs: &mut [f32],
     chosen: &mut [u32],
     before: &[f32],
-    ds1: f32,
-    ds2: &[f32],
-    share: f32,
+    lengths: Lengths,
     step: u32,
     mismatches: [&[f32]; N],
 ) {
+    let Lengths { ds1, ds2, share } = lengths;
     let count = costs.len();
-    let (chosen, before, ds2) = (&mut chosen[..count], &before[..count], &ds2[..count]);
+    let (chosen, before) = (&mut chosen[..count], &before[..count]);
     let mismatches = mismatches.map(|slice| &slice[..count]);
-    for k in 0..count {
+    let price = |ds2: f32| {
+        let (both, stretch) = (ds1 + ds2, (ds1 - ds2).abs());
+        (share * both, stretch * (EVEN_STRETCH + stretch / both))
+    };
+    let mut lower = |k: usize, (factor, fixed): (f32, f32)| {
         let mismatch: f32 = mismatches.iter().map(|slice| slice[k]).sum();
-        let (both, stretch) = (ds1 + ds2[k], (ds1 - ds2[k]).abs());
-        let sum = before[k] + mismatch * share * both + stretch * (EVEN_STRETCH + stretch / both);
+        let sum = before[k] + mismatch * factor + fixed;
         let better = sum < costs[k];
         costs[k] = if better { sum } else { costs[k] };
         chosen[k] = if better { step } else { chosen[k] };
+    };
+    // A division for every column would take longer than all the rest.
+    if let [ds2] = ds2 {
+        let price = price(*ds2);
+        (0..count).for_each(|k| lower(k, price));
+    } else {
+        let ds2 = &ds2[..count];
+        (0..count).for_each(|k| lower(k, price(ds2[k])));
     }
 }
 
