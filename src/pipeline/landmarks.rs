@@ -217,10 +217,13 @@ impl Landmarks {
             }
             let mut points = Vec::with_capacity(rows.len());
             for row in &rows {
-                let all: Option<Vec<Point>> = (0..polygons.len())
-                    .map(|pose| row[pose].or_else(|| inside::predicted(polygons, row, pose)))
+                let all: Result<Vec<Point>, PipelineError> = (0..polygons.len())
+                    .map(|pose| {
+                        let place = row[pose].or_else(|| inside::predicted(polygons, row, pose));
+                        place.ok_or_else(|| lacking(pose, &path.name, path.line))
+                    })
                     .collect();
-                points.push(all.ok_or_else(|| lacking(0, &path.name, path.line))?);
+                points.push(all?);
             }
             for (pose, obstacles) in obstacles.iter_mut().enumerate() {
                 obstacles.add_line(points.iter().map(|places| places[pose]));

@@ -121,7 +121,7 @@ impl Division {
             }
             // Every stuck piece costs a Steiner point at least.
             if self.vertex_count() >= self.most_vertices {
-                return Err(self.too_narrow(&piece));
+                return Err(self.too_narrow(&piece, 0));
             }
             let diagonals = clear_partition(&sights, common);
             if diagonals.is_empty() {
@@ -210,12 +210,12 @@ impl Division {
     fn solve_by_overlay(&mut self, piece: &[usize], sights: &[Sight]) -> Result<(), TriangulateError> {
         // An overlay hardly ever has fewer points than its polygon.
         if self.most_vertices - self.vertex_count() < piece.len() {
-            return Err(self.too_narrow(piece));
+            return Err(self.too_narrow(piece, 0));
         }
-        let overlay = chord_overlay::overlay(sights).ok_or_else(|| self.too_narrow(piece))?;
+        let overlay = chord_overlay::overlay(sights).ok_or_else(|| self.too_narrow(piece, 0))?;
         let count = overlay.steiner_count();
         if self.vertex_count() + count > self.most_vertices {
-            return Err(self.too_narrow(piece));
+            return Err(self.too_narrow(piece, 0));
         }
         let start = self.vertex_count();
         self.report.overlay += count;
@@ -241,7 +241,7 @@ impl Division {
     fn add_vertices(&mut self, places: &[Vec<Point>], piece: &[usize]) -> Result<usize, TriangulateError> {
         let start = self.vertex_count();
         if start + places.len() > self.most_vertices {
-            return Err(self.too_narrow(piece));
+            return Err(self.too_narrow(piece, 0));
         }
         for place in places {
             for (positions, &point) in self.positions.iter_mut().zip(place) {
@@ -292,18 +292,19 @@ impl Division {
     fn look(&self, piece: &[usize]) -> Result<Vec<Sight>, TriangulateError> {
         self.positions
             .iter()
-            .map(|positions| {
+            .enumerate()
+            .map(|(pose, positions)| {
                 let points: Vec<Point> = piece.iter().map(|&v| positions[v]).collect();
-                let triangles = triangulate_polygon(&points).ok_or_else(|| self.too_narrow(piece))?;
+                let triangles = triangulate_polygon(&points).ok_or_else(|| self.too_narrow(piece, pose))?;
                 Ok(Sight::new(points, triangles))
             })
             .collect()
     }
 
-    fn too_narrow(&self, piece: &[usize]) -> TriangulateError {
-        let place = self.positions[0][piece[0]];
+    fn too_narrow(&self, piece: &[usize], pose: usize) -> TriangulateError {
+        let place = self.positions[pose][piece[0]];
         TriangulateError::TooNarrow {
-            pose: 0,
+            pose,
             x: place.x,
             y: place.y,
         }
