@@ -9,9 +9,27 @@ use inbetween::pose::Mapping;
 /// Landmarks named in a pose's line; the others are counted.
 const NAMED: usize = 6;
 
+/// What a line of the table is about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Row {
+    Input,
+    Stage(Stage),
+    Total,
+}
+
+impl std::fmt::Display for Row {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Input => f.write_str("input"),
+            Self::Stage(stage) => stage.fmt(f),
+            Self::Total => f.write_str("total"),
+        }
+    }
+}
+
 /// Looks at the clock whenever a stage begins.
 pub(crate) struct StageClock {
-    begun: Vec<(String, Instant)>,
+    begun: Vec<(Row, Instant)>,
     end: Option<Instant>,
 }
 
@@ -19,14 +37,14 @@ impl StageClock {
     /// Starts with the reading of the drawings.
     pub(crate) fn start() -> Self {
         Self {
-            begun: vec![("input".to_owned(), Instant::now())],
+            begun: vec![(Row::Input, Instant::now())],
             end: None,
         }
     }
 
     /// Another stage begins.
     pub(crate) fn begins(&mut self, stage: Stage) {
-        self.begun.push((stage.to_string(), Instant::now()));
+        self.begun.push((Row::Stage(stage), Instant::now()));
     }
 
     /// The last one is done.
@@ -35,16 +53,16 @@ impl StageClock {
     }
 
     /// Every stage with its time, and the total.
-    fn times(&self) -> Vec<(String, Duration)> {
+    fn times(&self) -> Vec<(Row, Duration)> {
         let end = self.end.unwrap_or_else(Instant::now);
         let ends = self.begun.iter().skip(1).map(|(_, at)| *at).chain([end]);
-        let mut times: Vec<(String, Duration)> = self
+        let mut times: Vec<(Row, Duration)> = self
             .begun
             .iter()
             .zip(ends)
-            .map(|((name, from), to)| (name.clone(), to.duration_since(*from)))
+            .map(|((row, from), to)| (*row, to.duration_since(*from)))
             .collect();
-        times.push(("total".to_owned(), times.iter().map(|(_, time)| *time).sum()));
+        times.push((Row::Total, times.iter().map(|(_, time)| *time).sum()));
         times
     }
 }
@@ -59,9 +77,9 @@ pub(crate) fn lines(
     let rows: Vec<[String; 3]> = clock
         .times()
         .into_iter()
-        .map(|(name, time)| {
-            let numbers = numbers_of(&name, drawings, mapping, report);
-            [name, format!("{:.1}", time.as_secs_f64() * 1e3), numbers]
+        .map(|(row, time)| {
+            let numbers = numbers_of(row, drawings, mapping, report);
+            [row.to_string(), format!("{:.1}", time.as_secs_f64() * 1e3), numbers]
         })
         .collect();
     let mut lines = aligned(["stage", "ms", "result"], &rows);
@@ -97,56 +115,60 @@ pub(crate) fn lines(
 }
 
 /// What a stage has to say.
-fn numbers_of(stage: &str, drawings: &[Drawing], mapping: &Mapping, report: &MappingReport) -> String {
+fn numbers_of(row: Row, drawings: &[Drawing], mapping: &Mapping, report: &MappingReport) -> String {
     let largest = |values: &[f64]| 100.0 * values.iter().copied().fold(0.0, f64::max);
-    if stage == "input" {
-        let rings = drawings.iter().flat_map(|drawing| drawing.outline.rings());
-        let points: usize = rings.map(|ring| ring.len()).sum();
-        let holes = mapping.rings.len().saturating_sub(1);
-        return format!("{} drawings, {points} outline points, {holes} holes", drawings.len());
+    match row {
+        Row::Input => {
+            let rings = drawings.iter().flat_map(|drawing| drawing.outline.rings());
+            let points: usize = rings.map(|ring| ring.len()).sum();
+            let holes = mapping.rings.len().saturating_sub(1);
+            format!("{} drawings, {points} outline points, {holes} holes", drawings.len())
+        }
+        Row::Stage(Stage::Matching) => {
+            let costs = report.matching.poses.iter().map(|pose| pose.cost);
+            let reference = &mapping.poses.names()[mapping.matching.reference];
+            let worst = costs.fold(0.0, f64::max);
+            format!("to '{reference}', cost at most {worst:.2}")
+        }
+        Row::Stage(Stage::Simplification) => {
+            let of = &report.simplification;
+            format!(
+                "{} to {} vertices, at most {:.2} % of the diagonal off, area at most {:.1} % larger",
+                of.tuples,
+                of.vertices,
+                largest(&of.deviation),
+                largest(&of.excess_area)
+            )
+        }
+        Row::Stage(Stage::Triangulation) => {
+            let of = &report.triangulation;
+            format!(
+                "{} Steiner points: {} on bridges, {} single, {} on link paths, {} from overlays, {} taken out",
+                mapping.steiner, of.bridge, of.single, of.link, of.overlay, of.decimated
+            )
+        }
+        Row::Stage(Stage::Refinement) => {
+            let (of, quality) = (&report.refinement, &report.quality);
+            format!(
+                "{} splits, {} flips; smallest angle {:.1} degrees, 5th percentile {:.1}; stretch {:.2}, largest {:.1}",
+                of.splits,
+                of.flips,
+                quality.smallest_angle_deg,
+                quality.low_angle_deg,
+                quality.median_stretch,
+                quality.largest_stretch
+            )
+        }
+        Row::Stage(_) => String::new(),
+        Row::Total => {
+            let topology = mapping.poses.topology();
+            format!(
+                "{} vertices, {} triangles",
+                topology.vertex_count(),
+                topology.triangles().len()
+            )
+        }
     }
-    if stage == Stage::Matching.to_string() {
-        let costs = report.matching.poses.iter().map(|pose| pose.cost);
-        let reference = &mapping.poses.names()[mapping.matching.reference];
-        let worst = costs.fold(0.0, f64::max);
-        return format!("to '{reference}', cost at most {worst:.2}");
-    }
-    if stage == Stage::Simplification.to_string() {
-        let of = &report.simplification;
-        return format!(
-            "{} to {} vertices, at most {:.2} % of the diagonal off, area at most {:.1} % larger",
-            of.tuples,
-            of.vertices,
-            largest(&of.deviation),
-            largest(&of.excess_area)
-        );
-    }
-    if stage == Stage::Triangulation.to_string() {
-        let of = &report.triangulation;
-        return format!(
-            "{} Steiner points: {} on bridges, {} single, {} on link paths, {} from overlays, {} taken out",
-            mapping.steiner, of.bridge, of.single, of.link, of.overlay, of.decimated
-        );
-    }
-    if stage == Stage::Refinement.to_string() {
-        let of = &report.refinement;
-        let quality = &report.quality;
-        return format!(
-            "{} splits, {} flips; smallest angle {:.1} degrees, 5th percentile {:.1}; stretch {:.2}, largest {:.1}",
-            of.splits,
-            of.flips,
-            quality.smallest_angle_deg,
-            quality.low_angle_deg,
-            quality.median_stretch,
-            quality.largest_stretch
-        );
-    }
-    let topology = mapping.poses.topology();
-    format!(
-        "{} vertices, {} triangles",
-        topology.vertex_count(),
-        topology.triangles().len()
-    )
 }
 
 /// Three columns: words, a number, words.
@@ -178,7 +200,7 @@ mod tests {
         let start = Instant::now();
         let at = |ms: u64| start + Duration::from_millis(ms);
         let clock = StageClock {
-            begun: vec![("input".to_owned(), start), ("matching".to_owned(), at(3))],
+            begun: vec![(Row::Input, start), (Row::Stage(Stage::Matching), at(3))],
             end: Some(at(10)),
         };
         let times: Vec<u128> = clock.times().iter().map(|(_, time)| time.as_millis()).collect();

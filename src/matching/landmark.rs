@@ -1,6 +1,7 @@
 //! Landmarks: points that an artist names on several poses.
 
 use super::MatchError;
+use crate::outline::parameter_gap;
 
 /// Landmarks nearer to one another than this, in perimeters, are at the same place: less than a tenth of a pixel on any
 /// drawing, and far more than rounding.
@@ -58,8 +59,7 @@ fn refuse_coincident(landmarks: &[Landmark], pose: usize) -> Result<(), MatchErr
     placed.sort_by(|a, b| a.0.total_cmp(&b.0));
     for k in 0..placed.len() {
         let ((a, first), (b, second)) = (placed[k], placed[(k + 1) % placed.len()]);
-        let gap = (b - a).rem_euclid(1.0);
-        if placed.len() > 1 && gap.min(1.0 - gap) < COINCIDENT {
+        if placed.len() > 1 && parameter_gap(a, b) < COINCIDENT {
             return Err(MatchError::LandmarksCoincide {
                 first: first.to_owned(),
                 second: second.to_owned(),

@@ -40,10 +40,6 @@ const MIRROR_COST_MARGIN: f32 = 1.05;
 /// A pose looks mirrored if its reflection is nearer to the reference by this factor.
 const MIRROR_MARGIN: f64 = 0.7;
 
-/// Rounds in which every pose is matched again to all others. More gain nothing: of poses that cannot agree, now these win,
-/// now those.
-const JOINT_ROUNDS: usize = 1;
-
 /// With this many landmarks in common their cyclic order says which way a pose faces.
 const ORIENTING_LANDMARKS: usize = 3;
 
@@ -143,12 +139,12 @@ pub fn match_rings(rings: &[Ring], landmarks: &[Landmark], options: &MatchOption
     let given = landmarks.clone();
     carry_to_reference(&forms, reference, &mut landmarks)?;
 
-    let (frame, matches) = match_all(&forms, reference, &landmarks)?;
-    let rows = (0..frame.len())
+    let StarMatch { frame, matches, .. } = match_all(&forms, reference, &landmarks)?;
+    let rows = (0..frame.rows.len())
         .map(|row| {
             let of_pose = |pose: usize| match &matches[pose] {
                 Some(matched) => matched.parameters[row],
-                None => frame[row],
+                None => frame.rows[row],
             };
             (0..count).map(of_pose).collect()
         })
@@ -168,7 +164,7 @@ pub fn match_rings(rings: &[Ring], landmarks: &[Landmark], options: &MatchOption
             };
             let (cost, mismatch) = match &matches[pose] {
                 Some(matched) => (matched.cost, matched.mismatch.clone()),
-                None => (0.0, vec![0.0; frame.len()]),
+                None => (0.0, vec![0.0; frame.rows.len()]),
             };
             PoseMatch {
                 cost,
@@ -302,13 +298,12 @@ fn carry_to_reference(forms: &[Form], reference: usize, landmarks: &mut [Landmar
     Ok(())
 }
 
-type Matches = (Vec<f64>, Vec<Option<PairMatch>>);
-
-fn match_all(forms: &[Form], reference: usize, landmarks: &[Landmark]) -> Result<Matches, MatchError> {
+/// Matches all poses, to the reference and then to one another.
+fn match_all(forms: &[Form], reference: usize, landmarks: &[Landmark]) -> Result<StarMatch, MatchError> {
     let all: Vec<usize> = (0..forms.len()).collect();
     let mut matched = match_some(forms, reference, landmarks, &all)?;
-    match_jointly(forms, reference, &mut matched);
-    Ok((matched.frame.rows, matched.matches))
+    match_jointly(forms, &mut matched);
+    Ok(matched)
 }
 
 /// Matches of some poses to the reference, which has none itself.
@@ -347,8 +342,9 @@ fn match_some(
 }
 
 /// Matches every pose again to all others as they stand, the reference among them, the worst matched first. One after the
-/// other: of two poses that disagree, only one has to move.
-fn match_jointly(forms: &[Form], reference: usize, matched: &mut StarMatch) {
+/// other: of two poses that disagree, only one has to move. Once: more rounds gain nothing, of poses that cannot agree now these
+/// win, now those.
+fn match_jointly(forms: &[Form], matched: &mut StarMatch) {
     let StarMatch { frame, pins, matches } = matched;
     let mut order: Vec<(f64, usize)> = matches
         .iter()
@@ -359,21 +355,18 @@ fn match_jointly(forms: &[Form], reference: usize, matched: &mut StarMatch) {
         return;
     }
     order.sort_by(|a, b| b.0.total_cmp(&a.0));
-    for _ in 0..JOINT_ROUNDS {
-        for &(_, pose) in &order {
-            let others = (0..forms.len()).filter(|other| *other != pose).filter_map(|other| {
-                let parameters = match &matches[other] {
-                    Some(matched) => &matched.parameters,
-                    None if other == reference => &frame.rows,
-                    None => return None,
-                };
-                Some((&forms[other], &parameters[..]))
-            });
-            let model = Model::new(others.collect());
-            let current = matches[pose].as_ref().map(|matched| &matched.parameters[..]);
-            if let Some(again) = pinned_match(frame, &model, &forms[pose], &pins[pose], current) {
-                matches[pose] = Some(again);
-            }
+    for &(_, pose) in &order {
+        let others = (0..forms.len()).filter(|other| *other != pose).map(|other| {
+            // The reference alone has no match: the rows are its own.
+            let parameters = matches[other]
+                .as_ref()
+                .map_or(&frame.rows, |matched| &matched.parameters);
+            (&forms[other], &parameters[..])
+        });
+        let model = Model::new(others.collect());
+        let current = matches[pose].as_ref().map(|matched| &matched.parameters[..]);
+        if let Some(again) = pinned_match(frame, &model, &forms[pose], &pins[pose], current) {
+            matches[pose] = Some(again);
         }
     }
 }

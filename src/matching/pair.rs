@@ -239,18 +239,11 @@ impl Task<'_> {
         let count = parameters.len();
         let own = Samples::new(&self.pose.curve, parameters, FINE_WINDOWS);
         let (_, curves) = self.model.samples(0, 1, FINE_WINDOWS);
-        let step = |t: &[f64], k: usize| {
-            if k + 1 == count {
-                t[0] + 1.0 - t[k]
-            } else {
-                t[k + 1] - t[k]
-            }
-        };
         let mut cost = 0.0;
         let mut mismatch = vec![0.0; count];
         for curve in &curves {
             for (k, density) in mismatch.iter_mut().enumerate() {
-                let (ds1, ds2) = (step(&curve.parameters, k), step(&own.parameters, k));
+                let (ds1, ds2) = (step_after(&curve.parameters, k), step_after(&own.parameters, k));
                 let windows = curve.turning.iter().zip(&own.turning);
                 let turning: f64 = windows.map(|(a, b)| f64::from((a[k] - b[k]).abs())).sum();
                 let part = step_cost(turning, ds1, ds2) / curves.len() as f64;
@@ -275,22 +268,23 @@ fn best_path(table: &MismatchTable, band: &[(usize, usize)], reach: usize) -> Op
         .map(|path| CoarseMatch::from_path(table, &path))
 }
 
+/// From parameter `k` of a closed curve to the next, the first following the last.
+fn step_after(parameters: &[f64], k: usize) -> f64 {
+    let next = match parameters.get(k + 1) {
+        Some(next) => *next,
+        None => parameters[0] + 1.0,
+    };
+    next - parameters[k]
+}
+
 /// Runs `change` on the parameters cut open at a pinned row, or, without pins, where they increase most freely.
 fn settle(parameters: &mut [f64], pins: &[Pin], change: impl Fn(&mut [f64], &[usize])) {
     let count = parameters.len();
-    let step = |k: usize| {
-        let next = if k + 1 == count {
-            parameters[0] + 1.0
-        } else {
-            parameters[k + 1]
-        };
-        next - parameters[k]
-    };
     let cut = match pins.first() {
         Some(pin) => pin.row,
         None => (0..count)
             .max_by(|a, b| {
-                let freedom = |k: usize| step(k).min(step((k + count - 1) % count));
+                let freedom = |k: usize| step_after(parameters, k).min(step_after(parameters, (k + count - 1) % count));
                 freedom(*a).total_cmp(&freedom(*b))
             })
             .unwrap_or(0),

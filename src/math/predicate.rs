@@ -53,6 +53,12 @@ pub fn on_segment(p: Point, a: Point, b: Point) -> bool {
     orientation(a, b, p) == Ordering::Equal && in_box(p, a, b)
 }
 
+/// Whether the edge `b c` runs back over its predecessor `a b`.
+#[must_use]
+pub fn folds_back(a: Point, b: Point, c: Point) -> bool {
+    orientation(a, b, c).is_eq() && (a - b).dot(&(c - b)) > 0.0
+}
+
 fn in_box(p: Point, a: Point, b: Point) -> bool {
     let (low, high) = (a.inf(&b), a.sup(&b));
     low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y

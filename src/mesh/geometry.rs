@@ -55,6 +55,23 @@ pub fn smallest_angle_rad(triangle: [Point; 3]) -> f64 {
     angles_rad(triangle).into_iter().fold(f64::INFINITY, f64::min)
 }
 
+/// A triangle's smallest interior angle over several embeddings, in radians.
+pub fn worst_angle_rad<'a>(embeddings: impl IntoIterator<Item = &'a [Point]>, triangle: [usize; 3]) -> f64 {
+    let angles = embeddings
+        .into_iter()
+        .map(|positions| smallest_angle_rad(corners(positions, triangle)));
+    angles.fold(f64::INFINITY, f64::min)
+}
+
+/// Every triangle's smallest angle over all embeddings, in degrees, in increasing order.
+#[must_use]
+pub fn worst_angles_deg(embeddings: &[Vec<Point>], triangles: &[[usize; 3]]) -> Vec<f64> {
+    let worst = |&triangle| worst_angle_rad(embeddings.iter().map(Vec::as_slice), triangle).to_degrees();
+    let mut angles: Vec<f64> = triangles.iter().map(worst).collect();
+    angles.sort_by(f64::total_cmp);
+    angles
+}
+
 /// How much more a triangle is stretched in one direction than across it when `from` becomes `to`: the ratio of the
 /// singular values of the linear map between them, at least 1; exactly 1 up to rounding for a similarity, infinite where
 /// `from` or `to` has no area.

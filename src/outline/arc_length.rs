@@ -89,6 +89,13 @@ impl ArcLength {
     }
 }
 
+/// How far two parameters of a closed curve are apart, the shorter way around: at most 1/2.
+#[must_use]
+pub fn parameter_gap(a: f64, b: f64) -> f64 {
+    let gap = (a - b).rem_euclid(1.0);
+    gap.min(1.0 - gap)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,6 +9,6 @@ mod ring;
 mod shape;
 pub mod simplicity;
 
-pub use arc_length::ArcLength;
+pub use arc_length::{ArcLength, parameter_gap};
 pub use ring::{Ring, RingError};
 pub use shape::{Outline, OutlineError};

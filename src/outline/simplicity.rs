@@ -43,9 +43,9 @@ pub fn first_meeting(rings: &[Ring]) -> Option<Meeting> {
             .filter(|other| {
                 let (other_ring, other_edge, c, d) = other.data;
                 if other_ring == ring && other_edge == (edge + 1) % count {
-                    folds_back(a, b, d)
+                    predicate::folds_back(a, b, d)
                 } else if other_ring == ring && (other_edge + 1) % count == edge {
-                    folds_back(c, d, b)
+                    predicate::folds_back(c, d, b)
                 } else {
                     predicate::touch(a, b, c, d)
                 }
@@ -61,11 +61,6 @@ pub fn first_meeting(rings: &[Ring]) -> Option<Meeting> {
         }
     }
     None
-}
-
-/// Whether the edge `b c` runs back over its predecessor `a b`.
-fn folds_back(a: Point, b: Point, c: Point) -> bool {
-    predicate::orientation(a, b, c).is_eq() && (a - b).dot(&(c - b)) > 0.0
 }
 
 /// Where two segments known to meet do so, up to rounding.

@@ -12,7 +12,7 @@ use crate::compatible::{CompatibleMesh, FeaturePath, Features, PathEnd};
 use crate::input::Drawing;
 use crate::matching::Landmark;
 use crate::math::{Point, point};
-use crate::outline::{ArcLength, Outline};
+use crate::outline::{ArcLength, Outline, parameter_gap};
 use crate::pose::{LandmarkKind, PlacedLandmark};
 use crate::scene::{Facing, Scene};
 
@@ -128,9 +128,9 @@ impl Landmarks {
                 .at
                 .iter()
                 .zip(&landmark.at)
-                .filter_map(|(a, b)| Some((*a)? - (*b)?))
+                .filter_map(|(a, b)| Some(parameter_gap((*a)?, (*b)?)))
                 .peekable();
-            shared.peek().is_some() && shared.all(|gap| (gap - gap.round()).abs() < SAME_PLACE)
+            shared.peek().is_some() && shared.all(|gap| gap < SAME_PLACE)
         };
         let Some(number) = self.on_outline.iter().position(is_same) else {
             self.on_outline.push(landmark);
@@ -145,16 +145,10 @@ impl Landmarks {
     /// All landmarks on every pose of the finished mesh: those on the outline, points inside, lines. `anchors` are the places
     /// of the first (#landmarks x #poses).
     pub(super) fn placed(&self, anchors: &[Vec<Point>], mesh: &CompatibleMesh) -> Vec<PlacedLandmark> {
-        let on_outline = self
-            .on_outline
-            .iter()
-            .zip(anchors)
-            .map(|(landmark, places)| PlacedLandmark {
-                name: landmark.name.clone(),
-                kind: LandmarkKind::OnOutline,
-                at: places.iter().map(|place| vec![*place]).collect(),
-                given: landmark.at.iter().map(Option::is_some).collect(),
-            });
+        let on_outline = self.on_outline.iter().zip(anchors).map(|(landmark, places)| {
+            let at = places.iter().map(|place| vec![*place]).collect();
+            placed(&landmark.name, LandmarkKind::OnOutline, at, &landmark.at)
+        });
         let along = |vertices: &[usize]| -> Vec<Vec<Point>> {
             let places = |positions: &Vec<Point>| vertices.iter().map(|&v| positions[v]).collect();
             mesh.positions.iter().map(places).collect()
@@ -163,22 +157,12 @@ impl Landmarks {
             .points
             .iter()
             .zip(&mesh.landmarks)
-            .map(|(point, vertex)| PlacedLandmark {
-                name: point.name.clone(),
-                kind: LandmarkKind::Inside,
-                at: along(&[*vertex]),
-                given: point.at.iter().map(Option::is_some).collect(),
-            });
+            .map(|(point, vertex)| placed(&point.name, LandmarkKind::Inside, along(&[*vertex]), &point.at));
         let lines = self
             .paths
             .iter()
             .zip(&mesh.paths)
-            .map(|(path, vertices)| PlacedLandmark {
-                name: path.name.clone(),
-                kind: LandmarkKind::Line,
-                at: along(vertices),
-                given: path.at.iter().map(Option::is_some).collect(),
-            });
+            .map(|(path, vertices)| placed(&path.name, LandmarkKind::Line, along(vertices), &path.at));
         on_outline.chain(inside).chain(lines).collect()
     }
 
@@ -264,6 +248,16 @@ impl Landmarks {
             features.points.push(places);
         }
         Ok((features, notes))
+    }
+}
+
+/// A landmark at `at` in every pose; `drawn` says which poses have it of their own.
+fn placed<T>(name: &str, kind: LandmarkKind, at: Vec<Vec<Point>>, drawn: &[Option<T>]) -> PlacedLandmark {
+    PlacedLandmark {
+        name: name.to_owned(),
+        kind,
+        at,
+        given: drawn.iter().map(Option::is_some).collect(),
     }
 }
 

@@ -35,15 +35,7 @@ impl MeshQuality {
     pub fn of(poses: &PoseSet) -> Self {
         let triangles = poses.topology().triangles();
         let corners = |pose: usize, triangle: &[usize; 3]| geometry::corners(&poses.positions()[pose], *triangle);
-        let mut angles: Vec<f64> = triangles
-            .iter()
-            .map(|triangle| {
-                (0..poses.len())
-                    .map(|pose| geometry::smallest_angle_rad(corners(pose, triangle)).to_degrees())
-                    .fold(f64::INFINITY, f64::min)
-            })
-            .collect();
-        angles.sort_by(f64::total_cmp);
+        let angles = geometry::worst_angles_deg(poses.positions(), triangles);
         let mut stretches: Vec<f64> = (0..poses.len())
             .flat_map(|to| (0..to).map(move |from| (from, to)))
             .flat_map(|(from, to)| {

@@ -146,8 +146,7 @@ pub fn refine(mesh: &CompatibleMesh, options: &RefineOptions) -> Result<(Compati
 
     let splits = work.vertex_count() - start;
     let refined = work.finish(&curves, mesh.steiner)?;
-    let mut angles = worst_angles_deg(&refined);
-    angles.sort_by(f64::total_cmp);
+    let angles = geometry::worst_angles_deg(&refined.positions, refined.topology.triangles());
     let report = RefineReport {
         splits,
         flips,
@@ -155,18 +154,4 @@ pub fn refine(mesh: &CompatibleMesh, options: &RefineOptions) -> Result<(Compati
         low_angle_deg: angles.get(angles.len() / 20).copied().unwrap_or(0.0),
     };
     Ok((refined, report))
-}
-
-/// Each triangle's smallest angle over all poses, in degrees.
-fn worst_angles_deg(mesh: &CompatibleMesh) -> Vec<f64> {
-    mesh.topology
-        .triangles()
-        .iter()
-        .map(|&triangle| {
-            mesh.positions
-                .iter()
-                .map(|positions| geometry::smallest_angle_rad(geometry::corners(positions, triangle)).to_degrees())
-                .fold(f64::INFINITY, f64::min)
-        })
-        .collect()
 }

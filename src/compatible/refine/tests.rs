@@ -28,7 +28,9 @@ fn a_landmark_keeps_its_place_and_the_worst_angle_is_reported() {
         [refined.positions[0][vertex], refined.positions[1][vertex]],
         [landmark[0], landmark[1]]
     );
-    let smallest = worst_angles_deg(&refined).into_iter().fold(f64::INFINITY, f64::min);
+    let smallest = geometry::worst_angles_deg(&refined.positions, refined.topology.triangles())
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
     assert_eq!(report.smallest_angle_deg, smallest);
     assert!(report.low_angle_deg > 12.0, "{report:?}");
 }

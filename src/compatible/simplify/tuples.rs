@@ -2,7 +2,7 @@
 
 use crate::matching::Correspondence;
 use crate::math::Point;
-use crate::outline::{ArcLength, Ring};
+use crate::outline::{ArcLength, Ring, parameter_gap};
 
 /// A closed ring of vertex tuples: vertex `k` has one point and one boundary parameter in every pose.
 #[derive(Debug, Clone, Default)]
@@ -75,10 +75,8 @@ impl TupleRing {
                 }
             };
             let near = |s: &Station| {
-                (0..singles.len()).all(|pose| {
-                    let apart = (place(s, pose) - place(&stations[start], pose)).rem_euclid(1.0);
-                    apart.min(1.0 - apart) <= merge_distance
-                })
+                (0..singles.len())
+                    .all(|pose| parameter_gap(place(s, pose), place(&stations[start], pose)) <= merge_distance)
             };
             let mut end = start + 1;
             while end < stations.len() {

@@ -182,7 +182,7 @@ fn is_clear(positions: &[Point], visits: &Visits, from: usize, to: usize, path: 
     let crosses_itself = links().any(|(k, (a, b))| {
         a == b
             || links().skip(k + 2).any(|(_, (c, d))| predicate::touch(a, b, c, d))
-            || path.get(k + 2).is_some_and(|&c| folds_back(a, b, c))
+            || path.get(k + 2).is_some_and(|&c| predicate::folds_back(a, b, c))
     });
     let (start, end) = (visits.vertex[from], visits.vertex[to]);
     let is_free = |(k, (a, b)): (usize, (Point, Point)), (u, v): (usize, usize)| {
@@ -190,10 +190,10 @@ fn is_clear(positions: &[Point], visits: &Visits, from: usize, to: usize, path: 
         let at_end = k == last && (u == end || v == end);
         if at_start {
             let other = if u == start { v } else { u };
-            !(predicate::on_segment(positions[other], a, b) || folds_back(b, a, positions[other]))
+            !(predicate::on_segment(positions[other], a, b) || predicate::folds_back(b, a, positions[other]))
         } else if at_end {
             let other = if u == end { v } else { u };
-            !(predicate::on_segment(positions[other], a, b) || folds_back(a, b, positions[other]))
+            !(predicate::on_segment(positions[other], a, b) || predicate::folds_back(a, b, positions[other]))
         } else {
             !predicate::touch(a, b, positions[u], positions[v])
         }
@@ -208,9 +208,4 @@ fn is_clear(positions: &[Point], visits: &Visits, from: usize, to: usize, path: 
         })
         && visits.opens_to(from, positions, path[1])
         && visits.opens_to(to, positions, path[last])
-}
-
-/// Whether the link `b c` runs back over `a b`.
-fn folds_back(a: Point, b: Point, c: Point) -> bool {
-    predicate::orientation(a, b, c).is_eq() && (a - b).dot(&(c - b)) > 0.0
 }

@@ -6,12 +6,9 @@
 //! 3. Patches are solved differently with as many points, and all is repeated, until a few rounds have gained nothing or
 //!    the work is used up.
 
-use super::ear_clipping::triangulate_polygon;
-use super::line_of_sight;
 use super::patch::{Kept, Resolver};
-use super::visibility::{Relation, Sight};
+use super::{line_of_sight, visibility};
 use crate::compatible::editable::EditableMesh;
-use crate::mesh::geometry;
 
 /// Rings with more vertices are left: re-triangulating is cubic in them, and they hardly ever close.
 const LARGEST_RING: usize = 40;
@@ -117,20 +114,9 @@ fn retriangulation(mesh: &EditableMesh, ring: &[usize]) -> Option<Vec<[usize; 3]
     if ring.len() > LARGEST_RING {
         return None;
     }
-    let mut common = Relation::full(ring.len());
-    let mut sights = Vec::with_capacity(mesh.pose_count());
-    for positions in &mesh.positions {
-        let points: Vec<_> = ring.iter().map(|&v| positions[v]).collect();
-        let sight = Sight::new(points.clone(), triangulate_polygon(&points)?);
-        common.intersect(&sight.visible_pairs());
-        sights.push(sight);
-    }
-    let quality = |t: [usize; 3]| {
-        sights
-            .iter()
-            .map(|sight| geometry::smallest_angle_rad(geometry::corners(&sight.points, t)))
-            .fold(f64::INFINITY, f64::min)
-    };
+    let sights = visibility::look(&mesh.positions, ring).ok()?;
+    let common = visibility::common_pairs(&sights);
+    let quality = |triangle| visibility::worst_angle_rad(&sights, triangle);
     let triangles = line_of_sight::best_triangulation(ring.len(), &common, quality)?;
     let triangles: Vec<[usize; 3]> = triangles.into_iter().map(|t| t.map(|k| ring[k])).collect();
     triangles.iter().all(|&t| mesh.is_positive(t)).then_some(triangles)

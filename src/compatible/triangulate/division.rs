@@ -10,14 +10,12 @@
 //! Cost: O(m^2) N for the visibility of m vertices in N poses, twice that in all while large pieces are halved.
 
 use super::chord_overlay;
-use super::ear_clipping::triangulate_polygon;
 use super::line_of_sight;
 use super::link_path::{self, LinkPath};
 use super::single_steiner::{self, Hub};
-use super::visibility::{Relation, Sight};
+use super::visibility::{self, Relation, Sight};
 use super::{TriangulateError, TriangulateReport};
 use crate::math::{Point, point};
-use crate::mesh::geometry;
 
 /// How much is tried on a stuck piece.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -94,8 +92,8 @@ impl Division {
                 self.triangles.push([a, b, c]);
                 continue;
             }
-            let sights = self.look(&piece)?;
-            let common = common_pairs(&sights);
+            let sights = visibility::look(&self.positions, &piece).map_err(|pose| self.too_narrow(&piece, pose))?;
+            let common = visibility::common_pairs(&sights);
             if piece.len() > LARGEST_PIECE
                 && let Some((i, j)) = line_of_sight::balanced_diagonal(
                     piece.len(),
@@ -108,12 +106,7 @@ impl Division {
                 pieces.push(chain(&piece, j, i));
                 continue;
             }
-            let quality = |triangle: [usize; 3]| {
-                sights
-                    .iter()
-                    .map(|sight| geometry::smallest_angle_rad(geometry::corners(&sight.points, triangle)))
-                    .fold(f64::INFINITY, f64::min)
-            };
+            let quality = |triangle| visibility::worst_angle_rad(&sights, triangle);
             if let Some(triangles) = line_of_sight::best_triangulation(piece.len(), &common, quality) {
                 self.triangles
                     .extend(triangles.into_iter().map(|t| t.map(|k| piece[k])));
@@ -289,18 +282,6 @@ impl Division {
         self.report = solution.report;
     }
 
-    fn look(&self, piece: &[usize]) -> Result<Vec<Sight>, TriangulateError> {
-        self.positions
-            .iter()
-            .enumerate()
-            .map(|(pose, positions)| {
-                let points: Vec<Point> = piece.iter().map(|&v| positions[v]).collect();
-                let triangles = triangulate_polygon(&points).ok_or_else(|| self.too_narrow(piece, pose))?;
-                Ok(Sight::new(points, triangles))
-            })
-            .collect()
-    }
-
     fn too_narrow(&self, piece: &[usize], pose: usize) -> TriangulateError {
         let place = self.positions[pose][piece[0]];
         TriangulateError::TooNarrow {
@@ -309,15 +290,6 @@ impl Division {
             y: place.y,
         }
     }
-}
-
-/// The pairs of vertices with line of sight in every pose.
-fn common_pairs(sights: &[Sight]) -> Relation {
-    let mut common = Relation::full(sights[0].points.len());
-    for sight in sights {
-        common.intersect(&sight.visible_pairs());
-    }
-    common
 }
 
 /// A diagonal is clear if no other vertex is nearer to it than this fraction of its length. A diagonal along a straight

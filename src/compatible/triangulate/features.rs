@@ -179,7 +179,5 @@ fn touch(p: &[Point], (a, b): (usize, usize), (c, d): (usize, usize)) -> bool {
         () if b == d => (b, a, c),
         () => return predicate::touch(p[a], p[b], p[c], p[d]),
     };
-    end == other
-        || (predicate::orientation(p[shared], p[end], p[other]).is_eq()
-            && (p[end] - p[shared]).dot(&(p[other] - p[shared])) > 0.0)
+    end == other || predicate::folds_back(p[end], p[shared], p[other])
 }

@@ -9,7 +9,9 @@
 
 use std::collections::BTreeSet;
 
+use super::ear_clipping::triangulate_polygon;
 use crate::math::{Point, point, predicate};
+use crate::mesh::geometry;
 
 /// A symmetric relation on m vertices.
 #[derive(Debug, Clone, PartialEq)]
@@ -192,6 +194,36 @@ impl Sight {
             }
         }
     }
+}
+
+/// The polygon `piece` as every pose sees it; `positions` are per pose.
+///
+/// # Errors
+/// The first pose in which it is too narrow to be triangulated.
+pub(super) fn look(positions: &[Vec<Point>], piece: &[usize]) -> Result<Vec<Sight>, usize> {
+    positions
+        .iter()
+        .enumerate()
+        .map(|(pose, positions)| {
+            let points: Vec<Point> = piece.iter().map(|&v| positions[v]).collect();
+            let triangles = triangulate_polygon(&points).ok_or(pose)?;
+            Ok(Sight::new(points, triangles))
+        })
+        .collect()
+}
+
+/// The pairs of vertices with line of sight in every pose.
+pub(super) fn common_pairs(sights: &[Sight]) -> Relation {
+    let mut common = Relation::full(sights[0].points.len());
+    for sight in sights {
+        common.intersect(&sight.visible_pairs());
+    }
+    common
+}
+
+/// A triangle's smallest angle in any pose, in radians.
+pub(super) fn worst_angle_rad(sights: &[Sight], triangle: [usize; 3]) -> f64 {
+    geometry::worst_angle_rad(sights.iter().map(|sight| sight.points.as_slice()), triangle)
 }
 
 #[cfg(test)]

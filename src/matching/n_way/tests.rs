@@ -4,6 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::math::{Point, rotation};
+use crate::outline::parameter_gap;
 
 /// A figure with limbs of different sizes: no symmetry, features all around.
 fn figure(points: usize, bend: f64) -> Ring {
@@ -27,18 +28,13 @@ fn matched(rings: &[Ring], landmarks: &[Landmark]) -> RingMatch {
     match_rings(rings, landmarks, &MatchOptions::default()).expect("a match")
 }
 
-fn cyclic_gap(a: f64, b: f64) -> f64 {
-    let gap = (a - b).rem_euclid(1.0);
-    gap.min(1.0 - gap)
-}
-
 /// The largest distance between where the vertices of pose 0 are carried on `pose` and the vertices of the same number.
 fn worst_error(found: &RingMatch, rings: &[Ring], pose: usize) -> f64 {
     let vertices = |k: usize| crate::outline::ArcLength::new(&rings[k]).vertex_parameters().to_vec();
     vertices(0)
         .into_iter()
         .zip(vertices(pose))
-        .map(|(from, to)| cyclic_gap(found.correspondence.carry(0, pose, from), to))
+        .map(|(from, to)| parameter_gap(found.correspondence.carry(0, pose, from), to))
         .fold(0.0, f64::max)
 }
 
@@ -86,7 +82,7 @@ fn landmarks_are_met_exactly_and_beat_the_automatic_match() {
         assert_eq!(row[1], expected[1]);
     }
     assert_eq!(found.report.poses[2].landmarks, vec![1]);
-    assert!(cyclic_gap(found.correspondence.carry(0, 2, 0.1), 0.1) < 0.02);
+    assert!(parameter_gap(found.correspondence.carry(0, 2, 0.1), 0.1) < 0.02);
 }
 
 #[test]
@@ -189,7 +185,7 @@ fn symmetric_shapes_are_not_turned() {
     };
     let rings = [star(250), restarted(&star(250), 77)];
     let found = matched(&rings, &[]);
-    assert!(cyclic_gap(found.correspondence.carry(0, 1, 77.0 / 250.0), 0.0) < 0.01);
+    assert!(parameter_gap(found.correspondence.carry(0, 1, 77.0 / 250.0), 0.0) < 0.01);
 }
 
 proptest! {
@@ -210,9 +206,9 @@ proptest! {
             let t = k as f64 / 50.0;
             let expected = plain.correspondence.carry(0, 1, t);
             let found = other.correspondence.carry(0, 2, t) + offset;
-            prop_assert!(cyclic_gap(expected, found) < 1e-3, "{} at {}", cyclic_gap(expected, found), t);
+            prop_assert!(parameter_gap(expected, found) < 1e-3, "{} at {}", parameter_gap(expected, found), t);
             // Every pose has a say in the match of every other, and so has the rounding of its place.
-            prop_assert!(cyclic_gap(plain.correspondence.carry(0, 2, t), other.correspondence.carry(0, 1, t)) < 1e-3);
+            prop_assert!(parameter_gap(plain.correspondence.carry(0, 2, t), other.correspondence.carry(0, 1, t)) < 1e-3);
         }
         let [first, second, third] = rings;
         let swapped = match_rings(&[first, third, second], &[], &options).expect("a match");

@@ -10,7 +10,7 @@
 //! Cost O((#rows + #links^2) x #poses).
 
 use crate::matching::MatchReport;
-use crate::outline::ArcLength;
+use crate::outline::{ArcLength, parameter_gap};
 use crate::pose::{LandmarkKind, Mapping, PlacedLandmark};
 
 /// Links on salient points keep this distance, in perimeters of the reference: nearer numbers cannot be read.
@@ -60,7 +60,10 @@ impl Sections {
                     && let Some(place) = landmark.at.get(reference).and_then(|places| places.first())
                 {
                     let t = curve.nearest(*place).0;
-                    if !chosen.iter().any(|(other, _)| distance(*other, t) < NEAREST_LANDMARKS) {
+                    if !chosen
+                        .iter()
+                        .any(|(other, _)| parameter_gap(*other, t) < NEAREST_LANDMARKS)
+                    {
                         chosen.push((t, Some(index)));
                     }
                 }
@@ -76,7 +79,7 @@ impl Sections {
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
         for point in salient {
-            let is_near = |(t, _): &(f64, Option<usize>)| distance(*t, point.parameter) < NEAREST_LINKS;
+            let is_near = |(t, _): &(f64, Option<usize>)| parameter_gap(*t, point.parameter) < NEAREST_LINKS;
             if chosen.len() < MOST_LINKS && !chosen.iter().any(is_near) {
                 chosen.push((point.parameter, None));
             }
@@ -161,12 +164,6 @@ impl Sections {
     pub fn numbers(&self, k: usize) -> (usize, usize) {
         (k + 1, (k + 1) % self.links.len().max(1) + 1)
     }
-}
-
-/// The distance of two parameters of a closed curve.
-fn distance(a: f64, b: f64) -> f64 {
-    let gap = (a - b).rem_euclid(1.0);
-    gap.min(1.0 - gap)
 }
 
 /// Sorts parameters and puts more between them until no gap is wide.
