@@ -19,11 +19,16 @@
 //! - Stretches can be blended through their logarithms, which stays positive for all weights.
 //! - Triangles that come out inverted are counted and reported.
 
+mod anchor;
 pub mod branch;
+mod maps;
 pub mod reference;
+mod region;
 mod rigid;
 pub mod rotation;
 pub mod stretch;
+mod system;
+mod targets;
 
 #[cfg(test)]
 mod tests;
@@ -55,14 +60,40 @@ pub enum Stretch {
     Log,
 }
 
-/// What moves linearly in the weights.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// What moves linearly in the weights, or as the caller of a frame says ([`RigidBlend::blend_anchored`]).
+#[derive(Debug, Clone, PartialEq, Default)]
 pub enum Anchor {
     /// The centroid, by the reference's triangle areas.
     #[default]
     Centroid,
-    /// This vertex. Mesh components without it keep their centroids.
+    /// This vertex, exactly. Mesh components without it keep their centroids.
     Vertex(usize),
+    /// Several vertices, each as far as the shape gives way. Mesh components without any keep their centroids.
+    Soft(Vec<SoftAnchor>),
+}
+
+/// A vertex that is drawn towards a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SoftAnchor {
+    /// Which vertex.
+    pub vertex: usize,
+    /// How strongly, a number without unit: at 1 it counts about as much as the shape of the triangles around it, at
+    /// 1000 it is met to a thousandth or so of what the shape gives way elsewhere.
+    pub stiffness: f64,
+}
+
+/// A disc on the mesh around a vertex in which the shape is stiffer, or may not be stretched far. Fades smoothly
+/// between half its radius and its radius.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Region {
+    /// The vertex in the middle.
+    pub vertex: usize,
+    /// How far it reaches along the mesh, as a fraction of a pose's diagonal.
+    pub radius: f64,
+    /// What the energy of its triangles is multiplied by; 1 changes nothing.
+    pub stiffness: f64,
+    /// By which factor triangles may be stretched or squashed more than in any pose; at least 1, infinite for no limit.
+    pub stretch_limit: f64,
 }
 
 /// What [`RigidBlend`] can be told.
@@ -76,6 +107,8 @@ pub struct BlendOptions {
     pub anchor: Anchor,
     /// Whole turns added to each pose's rotation; empty (the default) for none.
     pub turns: Vec<i32>,
+    /// Parts that are stiffer than others; empty (the default) for none.
+    pub regions: Vec<Region>,
 }
 
 /// Why there is no blend.
@@ -111,8 +144,8 @@ pub enum BlendError {
         /// The largest there is.
         last: usize,
     },
-    /// The anchor is no vertex.
-    #[error("there is no vertex {vertex} to anchor: the mesh has {count}")]
+    /// An anchor or the middle of a region is no vertex.
+    #[error("there is no vertex {vertex}: the mesh has {count}")]
     NoSuchVertex {
         /// The index asked for.
         vertex: usize,
@@ -128,6 +161,22 @@ pub enum BlendError {
         found: usize,
         /// Poses.
         poses: usize,
+    },
+    /// An option has a value that makes no sense.
+    #[error("{option} is {value}, but must be {must_be}")]
+    BadOption {
+        /// Which one.
+        option: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        must_be: &'static str,
+    },
+    /// Indices of vertices take four bytes.
+    #[error("{count} vertices are too many for a blend; use a coarser mesh")]
+    TooLarge {
+        /// Vertices of the mesh.
+        count: usize,
     },
     /// The weights are not finite or do not sum to 1.
     #[error("the weights sum to {sum}; they must sum to 1")]

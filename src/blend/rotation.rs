@@ -9,6 +9,9 @@
 //! 2. Breadth first, each triangle takes the angle nearest to that of the edge it is reached through.
 //! 3. Every edge is then checked: if its two triangles disagree about its angle, the walk does not close.
 //!
+//! The edge's own angle is computed only where it decides: the two triangles differ by less than half a turn, so
+//! where rounding to the neighbour leaves a margin ([`CLEAR_RAD`]), both ways agree.
+//!
 //! From a pose to a reference triangle that is no pose, stepping would be wrong: neighbouring references need not
 //! share a direction. There the angles are lifted through the pose-to-pose angles ([`lift`]).
 
@@ -16,9 +19,13 @@ use std::collections::VecDeque;
 
 use super::BlendError;
 use super::reference::pose_edges;
-use crate::math::{Matrix, PolarSplit, angle};
+use crate::math::{PolarSplit, angle};
 use crate::mesh::directed_edges;
 use crate::pose::PoseSet;
+
+/// Two neighbouring triangles whose angles, rounded to one another, differ by less than this need no look at the edge
+/// between them: the true difference is below pi, and rounding errors are below 1e-12.
+const CLEAR_RAD: f64 = 3.0;
 
 /// The consistent rotation of each triangle from pose `from` to pose `to`, in radians.
 ///
@@ -40,6 +47,15 @@ pub fn pose_to_pose(poses: &PoseSet, from: usize, to: usize) -> Result<Vec<f64>,
         let (a, b) = directed_edges(topology.triangles()[triangle])[corner];
         angle::between(start[b] - start[a], end[b] - end[a])
     };
+    // The angle that `neighbour` has beside `triangle`, which it touches along the edge of `corner`.
+    let beside = |angles_rad: &[f64], triangle: usize, corner: usize, neighbour: usize| {
+        let near_rad = angle::nearest_turn(angles_rad[neighbour], angles_rad[triangle]);
+        if (near_rad - angles_rad[triangle]).abs() < CLEAR_RAD {
+            return near_rad;
+        }
+        let edge_rad = angle::nearest_turn(edge_turn_rad(triangle, corner), angles_rad[triangle]);
+        angle::nearest_turn(angles_rad[neighbour], edge_rad)
+    };
     let mut reached = vec![false; angles_rad.len()];
     let mut queue = VecDeque::new();
     for seed in 0..angles_rad.len() {
@@ -50,12 +66,10 @@ pub fn pose_to_pose(poses: &PoseSet, from: usize, to: usize) -> Result<Vec<f64>,
         while let Some(triangle) = queue.pop_front() {
             for (corner, neighbour) in topology.neighbours()[triangle].iter().enumerate() {
                 let Some(neighbour) = *neighbour else { continue };
-                if std::mem::replace(&mut reached[neighbour], true) {
-                    continue;
+                if !std::mem::replace(&mut reached[neighbour], true) {
+                    angles_rad[neighbour] = beside(&angles_rad, triangle, corner, neighbour);
+                    queue.push_back(neighbour);
                 }
-                let edge_rad = angle::nearest_turn(edge_turn_rad(triangle, corner), angles_rad[triangle]);
-                angles_rad[neighbour] = angle::nearest_turn(angles_rad[neighbour], edge_rad);
-                queue.push_back(neighbour);
             }
         }
     }
@@ -63,11 +77,9 @@ pub fn pose_to_pose(poses: &PoseSet, from: usize, to: usize) -> Result<Vec<f64>,
     for (triangle, neighbours) in topology.neighbours().iter().enumerate() {
         for (corner, neighbour) in neighbours.iter().enumerate() {
             let Some(neighbour) = *neighbour else { continue };
-            let turn_rad = edge_turn_rad(triangle, corner);
-            let here = angle::nearest_turn(turn_rad, angles_rad[triangle]);
-            let there = angle::nearest_turn(turn_rad, angles_rad[neighbour]);
-            // They are equal or at least a whole turn apart.
-            if (here - there).abs() > std::f64::consts::PI {
+            // It is the same angle or at least a whole turn away.
+            let away_rad = beside(&angles_rad, triangle, corner, neighbour) - angles_rad[neighbour];
+            if away_rad.abs() > std::f64::consts::PI {
                 return Err(BlendError::NotClosed {
                     pose: poses.names()[to].clone(),
                     first: triangle.min(neighbour),
@@ -79,12 +91,12 @@ pub fn pose_to_pose(poses: &PoseSet, from: usize, to: usize) -> Result<Vec<f64>,
     Ok(angles_rad)
 }
 
-/// The angle of `map` (reference to pose `i`) that fits `pivot_rad` (reference to pivot pose) and `turned_rad` (pivot
-/// pose to pose `i`, consistent over the mesh). The two ways differ by less than a quarter turn: `R_i S_i (R_p S_p)^-1`
-/// turns by the angle of `R_i R_p^-1` but for the rotation in the product of two stretches.
+/// The angle of `split` (reference to pose `i`) nearest to `near_rad`: the reference's angle to the pivot pose plus the
+/// angle from there to pose `i`, consistent over the mesh. The two ways differ by less than a quarter turn:
+/// `R_i S_i (R_p S_p)^-1` turns by the angle of `R_i R_p^-1` but for the rotation in the product of two stretches.
 #[must_use]
-pub fn lift(map: &Matrix, pivot_rad: f64, turned_rad: f64) -> f64 {
-    angle::nearest_turn(PolarSplit::of(map).angle_rad, pivot_rad + turned_rad)
+pub fn lift(split: &PolarSplit, near_rad: f64) -> f64 {
+    angle::nearest_turn(split.angle_rad, near_rad)
 }
 
 #[cfg(test)]

@@ -11,24 +11,6 @@ pub fn entries(matrix: &Matrix) -> Symmetric {
     [matrix.m11, 0.5 * (matrix.m12 + matrix.m21), matrix.m22]
 }
 
-/// The matrix with these entries.
-#[must_use]
-pub fn matrix([a, b, c]: Symmetric) -> Matrix {
-    Matrix::new(a, b, b, c)
-}
-
-/// The sum of `terms`, each multiplied by its weight.
-#[must_use]
-pub fn combination(weights: &[f64], terms: &[Symmetric]) -> Symmetric {
-    let mut sum = [0.0; 3];
-    for (weight, term) in weights.iter().zip(terms) {
-        for (entry, value) in sum.iter_mut().zip(term) {
-            *entry += weight * value;
-        }
-    }
-    sum
-}
-
 /// The logarithm of a positive definite matrix whose determinant is known; the determinant is taken as given because
 /// for needles the entries no longer hold it.
 #[must_use]
@@ -36,8 +18,8 @@ pub fn logarithm([a, b, c]: Symmetric, determinant: f64) -> Symmetric {
     let (mean, half, radius) = mean_and_radius([a, b, c]);
     let larger = mean + radius;
     // ln(larger) - ln(smaller), with smaller = determinant / larger.
-    let difference = 2.0 * larger.ln() - determinant.ln();
-    let middle = 0.5 * determinant.ln();
+    let difference = 2.0 * libm::log(larger) - libm::log(determinant);
+    let middle = 0.5 * libm::log(determinant);
     // The limit for equal eigenvalues is 1 / mean.
     let slope = if radius > f64::EPSILON * mean {
         difference / (2.0 * radius)
@@ -51,20 +33,70 @@ pub fn logarithm([a, b, c]: Symmetric, determinant: f64) -> Symmetric {
 #[must_use]
 pub fn exponential([a, b, c]: Symmetric) -> Symmetric {
     let (mean, half, radius) = mean_and_radius([a, b, c]);
-    let scale = mean.exp();
+    let scale = libm::exp(mean);
     // sinh(r) / r is 1 at 0.
-    let slope = if radius > 0.0 { radius.sinh() / radius } else { 1.0 };
+    let slope = if radius > 0.0 { libm::sinh(radius) / radius } else { 1.0 };
     [
-        scale * (radius.cosh() + slope * half),
+        scale * (libm::cosh(radius) + slope * half),
         scale * slope * b,
-        scale * (radius.cosh() - slope * half),
+        scale * (libm::cosh(radius) - slope * half),
     ]
+}
+
+/// Between what and what the eigenvalues of a stretch have to stay.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StretchRange {
+    smallest: f64,
+    largest: f64,
+}
+
+impl StretchRange {
+    /// The eigenvalues of `stretches`, widened by the factor `limit` on both sides.
+    #[must_use]
+    pub fn around(stretches: impl Iterator<Item = Symmetric>, limit: f64) -> Self {
+        let mut range = Self {
+            smallest: f64::INFINITY,
+            largest: 0.0,
+        };
+        for entries in stretches {
+            let (mean, _, radius) = mean_and_radius(entries);
+            range.smallest = range.smallest.min(mean - radius);
+            range.largest = range.largest.max(mean + radius);
+        }
+        // No limit leaves even eigenvalues alone that are not positive.
+        range.smallest = if limit.is_finite() {
+            range.smallest / limit
+        } else {
+            f64::NEG_INFINITY
+        };
+        range.largest *= limit;
+        range
+    }
+
+    /// The matrix with the same directions and its eigenvalues within the range. Continuous in the entries.
+    #[must_use]
+    pub fn clamp(self, entries: Symmetric) -> Symmetric {
+        let (mean, half, radius) = mean_and_radius(entries);
+        let larger = (mean + radius).max(self.smallest).min(self.largest);
+        let smaller = (mean - radius).max(self.smallest).min(self.largest);
+        if larger == mean + radius && smaller == mean - radius {
+            return entries;
+        }
+        // Equal eigenvalues have no directions, and their difference is 0 whatever they are moved to.
+        let scale = if radius > 0.0 {
+            0.5 * (larger - smaller) / radius
+        } else {
+            0.0
+        };
+        let middle = 0.5 * (larger + smaller);
+        [middle + scale * half, scale * entries[1], middle - scale * half]
+    }
 }
 
 /// Half the trace, half the difference of the diagonal, and half the difference of the eigenvalues.
 fn mean_and_radius([a, b, c]: Symmetric) -> (f64, f64, f64) {
     let half = 0.5 * (a - c);
-    (0.5 * (a + c), half, half.hypot(b))
+    (0.5 * (a + c), half, (half * half + b * b).sqrt())
 }
 
 #[cfg(test)]

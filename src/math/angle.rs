@@ -7,7 +7,7 @@ use super::point::{Point, cross};
 /// The angle from direction `a` to direction `b`, in `(-pi, pi]`; 0 if either has no length.
 #[must_use]
 pub fn between(a: Point, b: Point) -> f64 {
-    cross(a, b).atan2(a.dot(&b))
+    libm::atan2(cross(a, b), a.dot(&b))
 }
 
 /// `angle_rad` moved by whole turns into `(-pi, pi]`.

@@ -6,7 +6,7 @@ pub type Matrix = nalgebra::Matrix2<f64>;
 /// The rotation by `angle_rad`, from x towards y.
 #[must_use]
 pub fn rotation(angle_rad: f64) -> Matrix {
-    let (sin, cos) = angle_rad.sin_cos();
+    let (sin, cos) = libm::sincos(angle_rad);
     Matrix::new(cos, -sin, sin, cos)
 }
 
@@ -27,7 +27,7 @@ impl PolarSplit {
     /// `atan2(m21 - m12, m11 + m22)`, which needs no iteration.
     #[must_use]
     pub fn of(matrix: &Matrix) -> Self {
-        let angle_rad = (matrix.m21 - matrix.m12).atan2(matrix.m11 + matrix.m22);
+        let angle_rad = libm::atan2(matrix.m21 - matrix.m12, matrix.m11 + matrix.m22);
         let stretch = rotation(-angle_rad) * matrix;
         // Symmetric up to rounding: the mean of the off-diagonals makes it exact.
         let off_diagonal = 0.5 * (stretch.m12 + stretch.m21);

@@ -11,8 +11,11 @@ pub mod angle;
 pub mod matrix;
 pub mod point;
 pub mod predicate;
+pub mod sine;
 pub mod smooth_step;
+mod vectorised;
 
 pub use matrix::{Matrix, PolarSplit, rotation};
 pub use point::Point;
 pub use smooth_step::{limit_weights, smooth_step};
+pub use vectorised::vectorised;

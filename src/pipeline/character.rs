@@ -120,6 +120,7 @@ fn blend_options(scene: &Scene, mapping: &Mapping) -> BlendOptions {
             Anchor::Landmark(landmark) => blend::Anchor::Vertex(nearest_vertex(scene, mapping, landmark)),
         },
         turns: scene.poses.iter().map(|pose| pose.turns).collect(),
+        ..BlendOptions::default()
     }
 }
 

@@ -3,7 +3,8 @@
 //! The matrix is permuted by approximate minimum degree and factored `L L^T` column by column (faer's simplicial
 //! form: the systems here have a few thousand unknowns and thin columns, where supernodes do not pay, and the plain
 //! factor makes the solve below short). The two triangular solves are written here: they take `K` right-hand sides
-//! side by side, so that the factor is read once for all of them, and allocate nothing once the buffer has grown.
+//! side by side, so that the factor is read once for all of them, and allocate nothing once the buffer has grown. Rows are
+//! kept in four bytes and diagonals as reciprocals: a solve is bound by how fast the factor is read.
 //!
 //! Cost for plane meshes of n vertices: about O(n^1.5) to factor, O(n log n) entries, each solve reads them twice.
 
@@ -17,6 +18,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Par, Side};
 
 use super::{SolveError, SparseMatrix};
+use crate::math::vectorised;
 
 /// The factor of a symmetric positive definite matrix.
 #[derive(Debug, Clone)]
@@ -24,9 +26,11 @@ pub struct SparseCholesky {
     size: usize,
     /// Unknown eliminated at each step.
     order: Vec<usize>,
+    /// One over the factor's diagonal.
+    reciprocals: Vec<f64>,
+    /// Where each column's entries below the diagonal start; one more than there are columns.
     column_starts: Vec<usize>,
-    /// Within a column the diagonal comes first.
-    rows: Vec<usize>,
+    rows: Vec<u32>,
     values: Vec<f64>,
 }
 
@@ -50,6 +54,7 @@ impl SparseCholesky {
             return Ok(Self {
                 size,
                 order: Vec::new(),
+                reciprocals: Vec::new(),
                 column_starts: vec![0],
                 rows: Vec::new(),
                 values: Vec::new(),
@@ -92,19 +97,32 @@ impl SparseCholesky {
             Some(permutation) => permutation.arrays().0.to_vec(),
             None => (0..size).collect(),
         };
-        let factored = Self {
+        // Within a column of faer's factor the diagonal comes first.
+        let starts = factor.col_ptr();
+        let mut factored = Self {
             size,
             order,
-            column_starts: factor.col_ptr().to_vec(),
-            rows: factor.row_idx().to_vec(),
-            values,
+            reciprocals: Vec::with_capacity(size),
+            column_starts: vec![0],
+            rows: Vec::with_capacity(values.len() - size),
+            values: Vec::with_capacity(values.len() - size),
         };
-        // NaN passes the pivot test of the factorisation.
-        let is_positive = |column: usize| factored.values[factored.column_starts[column]] > 0.0;
-        match (0..size).find(|&column| !is_positive(column)) {
-            Some(pivot) => Err(SolveError::NotPositiveDefinite { size, pivot }),
-            None => Ok(factored),
+        for column in 0..size {
+            let (start, end) = (starts[column], starts[column + 1]);
+            let reciprocal = values[start].recip();
+            // NaN passes the pivot test of the factorisation, and an infinite reciprocal would hide as one.
+            if !(reciprocal > 0.0 && reciprocal.is_finite()) {
+                return Err(SolveError::NotPositiveDefinite { size, pivot: column });
+            }
+            factored.reciprocals.push(reciprocal);
+            for &row in &factor.row_idx()[start + 1..end] {
+                let row = u32::try_from(row).map_err(|_| SolveError::OutOfMemory { size })?;
+                factored.rows.push(row);
+            }
+            factored.values.extend_from_slice(&values[start + 1..end]);
+            factored.column_starts.push(factored.values.len());
         }
+        Ok(factored)
     }
 
     /// Unknowns.
@@ -116,7 +134,13 @@ impl SparseCholesky {
     /// Entries of the factor.
     #[must_use]
     pub fn factor_entry_count(&self) -> usize {
-        self.values.len()
+        self.values.len() + self.size
+    }
+
+    /// The unknown that is eliminated at each step. [`Self::solve_in_order`] takes and gives entries in this order.
+    #[must_use]
+    pub fn order(&self) -> &[usize] {
+        &self.order
     }
 
     /// Solves for `K` right-hand sides at once, in place: `vectors[i]` holds entry `i` of each of them. `buffer` is
@@ -137,40 +161,51 @@ impl SparseCholesky {
         }
         buffer.clear();
         buffer.extend(self.order.iter().map(|&unknown| vectors[unknown]));
-        for column in 0..self.size {
-            let (diagonal, rows, values) = self.column(column);
-            let solved = buffer[column].map(|x| x / diagonal);
-            buffer[column] = solved;
-            for (&row, &value) in rows.iter().zip(values) {
-                for (entry, x) in buffer[row].iter_mut().zip(solved) {
-                    *entry -= value * x;
-                }
-            }
-        }
-        for column in (0..self.size).rev() {
-            let (diagonal, rows, values) = self.column(column);
-            let mut sum = buffer[column];
-            for (&row, &value) in rows.iter().zip(values) {
-                for (entry, x) in sum.iter_mut().zip(buffer[row]) {
-                    *entry -= value * x;
-                }
-            }
-            buffer[column] = sum.map(|x| x / diagonal);
-        }
+        vectorised(|| self.sweep(buffer));
         for (&unknown, solved) in self.order.iter().zip(buffer.iter()) {
             vectors[unknown] = *solved;
         }
         Ok(())
     }
 
-    /// The diagonal entry, and the rows and values below it.
-    fn column(&self, column: usize) -> (f64, &[usize], &[f64]) {
-        let (start, end) = (self.column_starts[column], self.column_starts[column + 1]);
-        (
-            self.values[start],
-            &self.rows[start + 1..end],
-            &self.values[start + 1..end],
-        )
+    /// As [`Self::solve`] for callers who keep their entries in the order of elimination ([`Self::order`]): nothing is
+    /// copied, and no working space is needed.
+    ///
+    /// # Errors
+    /// [`SolveError::WrongSize`] if there is not one entry for each unknown.
+    pub fn solve_in_order<const K: usize>(&self, vectors: &mut [[f64; K]]) -> Result<(), SolveError> {
+        if vectors.len() != self.size {
+            return Err(SolveError::WrongSize {
+                expected: self.size,
+                found: vectors.len(),
+            });
+        }
+        vectorised(|| self.sweep(vectors));
+        Ok(())
+    }
+
+    /// Forth through the factor and back through its transpose.
+    #[inline(always)]
+    fn sweep<const K: usize>(&self, vectors: &mut [[f64; K]]) {
+        let columns = || self.column_starts.windows(2).map(|bounds| bounds[0]..bounds[1]);
+        for (column, (entries, &reciprocal)) in columns().zip(&self.reciprocals).enumerate() {
+            let solved = vectors[column].map(|x| x * reciprocal);
+            vectors[column] = solved;
+            for (&row, &value) in self.rows[entries.clone()].iter().zip(&self.values[entries]) {
+                for (entry, x) in vectors[row as usize].iter_mut().zip(solved) {
+                    *entry -= value * x;
+                }
+            }
+        }
+        for (column, (entries, &reciprocal)) in columns().zip(&self.reciprocals).enumerate().rev() {
+            let mut sum = vectors[column];
+            for (&row, &value) in self.rows[entries.clone()].iter().zip(&self.values[entries]) {
+                for (entry, x) in sum.iter_mut().zip(vectors[row as usize]) {
+                    *entry -= value * x;
+                }
+            }
+            vectors[column] = sum.map(|x| x * reciprocal);
+        }
     }
 }
 

@@ -1,0 +1,187 @@
+//! What a blended frame costs, beside what it cannot do without: `cargo bench --bench blend`, two minutes.
+//!
+//! In one run and on one thread, so that the ratios mean something on any machine:
+//! - `faer solve`: faer's own two triangular solves for x and y on the same matrix, factored by faer as it likes best;
+//! - `own solve`: ours, both right-hand sides interleaved;
+//! - `frame`: everything from weights to vertices, the check for inverted triangles included;
+//! - `triad`: `a = b + s c` over arrays that together hold as many bytes as a frame reads at least once (the factor
+//!   twice, and what the poses say about the triangles): what the memory alone would take.
+//!
+//! Then the set-up, and a crowd on all cores.
+
+use std::hint::black_box;
+use std::time::Duration;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, LltRef, SymmetricOrdering, factorize_symbolic_cholesky};
+use faer::sparse::{SparseColMat, Triplet};
+use faer::{Conj, Mat, Par, Side};
+use inbetween::blend::{BlendOptions, RigidBlend, Stretch};
+use inbetween::math::Point;
+use inbetween::mesh::Topology;
+use inbetween::pose::PoseSet;
+use inbetween::solve::{SparseCholesky, Triplets};
+
+/// Columns and rows of the two meshes: 2,000 and 10,000 vertices.
+const SIZES: [(usize, usize); 2] = [(50, 40), (125, 80)];
+
+/// A strip that is bent more from pose to pose, with vertices off the grid.
+fn poses(columns: usize, rows: usize, count: usize) -> PoseSet {
+    let vertex = |i: usize, j: usize| j * columns + i;
+    let mut triangles = Vec::new();
+    for j in 1..rows {
+        for i in 1..columns {
+            let [a, b, c, d] = [vertex(i - 1, j - 1), vertex(i, j - 1), vertex(i, j), vertex(i - 1, j)];
+            triangles.extend(if (i + j) % 2 == 0 {
+                [[a, b, c], [a, c, d]]
+            } else {
+                [[a, b, d], [b, c, d]]
+            });
+        }
+    }
+    let topology = Topology::new(columns * rows, triangles).expect("a grid");
+    let flat: Vec<Point> = (0..columns * rows)
+        .map(|v| {
+            let (x, y) = ((v % columns) as f64, (v / columns) as f64);
+            Point::new(x + 0.3 * (1.7 * y).sin() * (0.9 * x).cos(), y + 0.3 * (2.1 * x).sin())
+        })
+        .collect();
+    let bent = |pose: usize| {
+        let curvature = (0.1 + 1.9 * pose as f64 / count as f64) * std::f64::consts::PI / columns as f64;
+        let place = |p: &Point| {
+            let (sine, cosine) = (curvature * p.x).sin_cos();
+            let radius = 1.0 / curvature + rows as f64 - p.y;
+            Point::new(radius * sine, -radius * cosine)
+        };
+        (format!("pose {pose}"), flat.iter().map(place).collect())
+    };
+    PoseSet::new(topology, (0..count).map(bent).collect()).expect("poses")
+}
+
+/// The entries of a matrix with the mesh's structure: one over edge lengths, the first vertex held.
+fn entries(poses: &PoseSet) -> Vec<(usize, usize, f64)> {
+    let positions = &poses.positions()[0];
+    let mut entries = vec![];
+    for triangle in poses.topology().triangles() {
+        for (&from, &to) in triangle.iter().zip(triangle.iter().cycle().skip(1)) {
+            let stiffness = 1.0 / (positions[from] - positions[to]).norm();
+            for (row, column, value) in [(from, from, 1.0), (to, to, 1.0), (from, to, -1.0), (to, from, -1.0)] {
+                if row > 0 && column > 0 {
+                    entries.push((row - 1, column - 1, value * stiffness));
+                }
+            }
+        }
+    }
+    entries
+}
+
+/// Measures faer's solve and ours on one matrix.
+fn solves(group: &mut criterion::BenchmarkGroup<'_, criterion::measurement::WallTime>, poses: &PoseSet) -> usize {
+    let size = poses.topology().vertex_count() - 1;
+    let entries = entries(poses);
+    let triplets: Vec<_> = entries.iter().map(|&(r, c, value)| Triplet::new(r, c, value)).collect();
+    let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(size, size, &triplets).expect("a matrix");
+    let symbolic = factorize_symbolic_cholesky(
+        matrix.symbolic(),
+        Side::Lower,
+        SymmetricOrdering::Amd,
+        CholeskySymbolicParams::default(),
+    )
+    .expect("memory");
+    let mut factor = vec![0.0; symbolic.len_val()];
+    let mut buffer = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()));
+    symbolic
+        .factorize_numeric_llt(
+            &mut factor,
+            matrix.as_ref(),
+            Side::Lower,
+            LltRegularization::default(),
+            Par::Seq,
+            MemStack::new(&mut buffer),
+            Default::default(),
+        )
+        .expect("positive definite");
+    let factored = LltRef::new(&symbolic, &factor);
+    let mut buffer = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(2, Par::Seq));
+    let right = Mat::from_fn(size, 2, |row, column| (row as f64 * 0.7 + column as f64).sin());
+    let mut solution = right.clone();
+    group.bench_function("faer solve", |b| {
+        b.iter(|| {
+            solution.copy_from(&right);
+            factored.solve_in_place_with_conj(Conj::No, solution.as_mut(), Par::Seq, MemStack::new(&mut buffer));
+        });
+    });
+
+    let mut triplets = Triplets::new(size, size);
+    for (row, column, value) in entries {
+        triplets.add(row, column, value);
+    }
+    let own = SparseCholesky::new(&triplets.build()).expect("positive definite");
+    let interleaved: Vec<[f64; 2]> = (0..size).map(|row| [right[(row, 0)], right[(row, 1)]]).collect();
+    let mut solution = interleaved.clone();
+    group.bench_function("own solve", |b| {
+        b.iter(|| {
+            solution.copy_from_slice(&interleaved);
+            own.solve_in_order(&mut solution)
+        });
+    });
+    own.factor_entry_count()
+}
+
+fn frames(criterion: &mut Criterion) {
+    for (columns, rows) in SIZES {
+        let vertices = columns * rows;
+        let mut group = criterion.benchmark_group(format!("{vertices} vertices"));
+        group
+            .measurement_time(Duration::from_secs(2))
+            .warm_up_time(Duration::from_millis(500));
+        let mut factor_entries = 0;
+        for count in [4, 16] {
+            let poses = poses(columns, rows, count);
+            if count == 4 {
+                factor_entries = solves(&mut group, &poses);
+            }
+            let weights: Vec<f64> = (0..count)
+                .map(|k| 2.0 * (k + 1) as f64 / (count * (count + 1)) as f64)
+                .collect();
+            for stretch in [Stretch::Linear, Stretch::Limited, Stretch::Log] {
+                let options = BlendOptions {
+                    stretch,
+                    ..BlendOptions::default()
+                };
+                let blend = RigidBlend::new(&poses, &options).expect("a blend");
+                let (mut scratch, mut positions) = (blend.scratch(), Vec::new());
+                group.bench_function(format!("frame, {count} poses, {stretch:?}"), |b| {
+                    b.iter(|| blend.blend(black_box(&weights), &mut scratch, &mut positions));
+                });
+            }
+            let bytes = 2 * 12 * factor_entries + 32 * count * poses.topology().triangles().len();
+            let (b, c) = (vec![1.0; bytes / 24], vec![2.0; bytes / 24]);
+            let mut a = b.clone();
+            group.bench_function(format!("triad, {count} poses, {} kB", bytes / 1000), |bencher| {
+                bencher.iter(|| {
+                    for ((a, b), c) in a.iter_mut().zip(&b).zip(&c) {
+                        *a = b + black_box(3.0) * c;
+                    }
+                    black_box(&mut a);
+                });
+            });
+        }
+        group.finish();
+    }
+}
+
+fn set_up(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("set-up");
+    group.sample_size(10);
+    let poses = poses(125, 80, 8);
+    group.bench_function("10000 vertices, 8 poses", |b| {
+        b.iter(|| RigidBlend::new(&poses, &BlendOptions::default()));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, frames, set_up);
+criterion_main!(benches);
