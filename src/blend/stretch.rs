@@ -51,9 +51,19 @@ pub struct StretchRange {
 }
 
 impl StretchRange {
+    /// No limit.
+    pub const ALL: Self = Self {
+        smallest: f64::NEG_INFINITY,
+        largest: f64::INFINITY,
+    };
+
     /// The eigenvalues of `stretches`, widened by the factor `limit` on both sides.
     #[must_use]
     pub fn around(stretches: impl Iterator<Item = Symmetric>, limit: f64) -> Self {
+        // Without a limit even eigenvalues that are not positive are left alone.
+        if limit.is_infinite() {
+            return Self::ALL;
+        }
         let mut range = Self {
             smallest: f64::INFINITY,
             largest: 0.0,
@@ -63,12 +73,7 @@ impl StretchRange {
             range.smallest = range.smallest.min(mean - radius);
             range.largest = range.largest.max(mean + radius);
         }
-        // No limit leaves even eigenvalues alone that are not positive.
-        range.smallest = if limit.is_finite() {
-            range.smallest / limit
-        } else {
-            f64::NEG_INFINITY
-        };
+        range.smallest /= limit;
         range.largest *= limit;
         range
     }

@@ -9,7 +9,7 @@
 
 use super::BlendError;
 use super::anchor::Anchors;
-use super::targets::{BlockMaps, Targets};
+use super::targets::{BlockMaps, Blocks, Targets};
 use crate::math::sine::{LANES, Lanes};
 use crate::math::{Matrix, Point, vectorised};
 use crate::mesh::{Topology, geometry};
@@ -92,27 +92,22 @@ impl System {
             .map(|&unknown| narrow(slot_of_unknown[unknown]))
             .collect::<Result<Vec<_>, _>>()?;
         let pinned_slot = narrow(unknown_count)?;
-        let stencils = topology
-            .triangles()
-            .chunks(LANES)
-            .zip(gradients.chunks(LANES))
-            .map(|(triangles, gradients)| {
-                let mut stencil = Stencil {
-                    slots: [[pinned_slot; LANES]; 3],
-                    gradients: [[0.0; LANES]; 4],
-                };
-                for (lane, (triangle, [second, third])) in triangles.iter().zip(gradients).enumerate() {
-                    for (corner, &vertex) in triangle.iter().enumerate() {
-                        stencil.slots[corner][lane] = slots[vertex];
-                    }
-                    for (of_gradient, entry) in stencil.gradients.iter_mut().zip([second.x, second.y, third.x, third.y])
-                    {
-                        of_gradient[lane] = entry;
-                    }
-                }
-                stencil
-            })
-            .collect();
+        let blocks = Blocks::of(topology.triangles().len());
+        let empty = Stencil {
+            slots: [[pinned_slot; LANES]; 3],
+            gradients: [[0.0; LANES]; 4],
+        };
+        let mut stencils = vec![empty; blocks.count()];
+        for (t, (triangle, [second, third])) in topology.triangles().iter().zip(gradients).enumerate() {
+            let (block, lane) = blocks.place(t);
+            let stencil = &mut stencils[block];
+            for (corner, &vertex) in triangle.iter().enumerate() {
+                stencil.slots[corner][lane] = slots[vertex];
+            }
+            for (of_gradient, entry) in stencil.gradients.iter_mut().zip([second.x, second.y, third.x, third.y]) {
+                of_gradient[lane] = entry;
+            }
+        }
         Ok(Self {
             factor,
             slots,
@@ -194,7 +189,7 @@ impl Stencil {
                 m21[lane] * x2[lane] + m22[lane] * y2[lane],
             ];
         }
-        for (lane, [px, py, qx, qy]) in pulls.into_iter().enumerate() {
+        for (lane, &[px, py, qx, qy]) in pulls.iter().enumerate() {
             let [first, second, third] = [0, 1, 2].map(|corner| self.slots[corner][lane] as usize);
             let entry = &mut right[first];
             *entry = [entry[0] - (px + qx), entry[1] - (py + qy)];

@@ -12,14 +12,41 @@ use crate::math::sine::{LANES, Lanes, sines_and_cosines};
 /// What the triangles of a block want: the four entries of a 2 x 2 matrix each, by rows.
 pub(super) type BlockMaps = [Lanes; 4];
 
+/// Which triangle is where: block `k` holds triangles `k`, `k + #blocks`, `k + 2 #blocks` and so on. Triangles that follow
+/// one another in a mesh share vertices; in a block they would wait for one another's sums.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Blocks {
+    count: usize,
+}
+
+impl Blocks {
+    /// For this many triangles.
+    pub(super) fn of(triangle_count: usize) -> Self {
+        Self {
+            count: triangle_count.div_ceil(LANES),
+        }
+    }
+
+    /// How many blocks.
+    pub(super) fn count(self) -> usize {
+        self.count
+    }
+
+    /// The block and the lane of a triangle.
+    pub(super) fn place(self, triangle: usize) -> (usize, usize) {
+        (triangle % self.count, triangle / self.count)
+    }
+}
+
 /// What the poses say about all triangles.
 #[derive(Debug, Clone)]
 pub(super) struct Targets {
     pose_count: usize,
+    layout: Blocks,
     stretch: Stretch,
     /// #blocks x #poses: angle, and the three entries of the stretch or of its logarithm.
     blocks: Vec<[Lanes; 4]>,
-    /// By triangle, if anything is limited.
+    /// By block and lane, if anything is limited.
     ranges: Vec<StretchRange>,
 }
 
@@ -28,34 +55,38 @@ impl Targets {
     pub(super) fn new(maps: &TriangleMaps, stretch: Stretch, limits: &[f64]) -> Self {
         let pose_count = maps.poses.len();
         let triangle_count = limits.len();
-        let mut blocks = vec![[[0.0; LANES]; 4]; triangle_count.div_ceil(LANES) * pose_count];
+        let layout = Blocks::of(triangle_count);
+        let mut blocks = vec![[[0.0; LANES]; 4]; layout.count() * pose_count];
         for triangle in 0..triangle_count {
-            let (block, lane) = (triangle / LANES, triangle % LANES);
+            let (block, lane) = layout.place(triangle);
             for (pose, of_pose) in maps.poses.iter().enumerate() {
                 let [angle_rad, a, b, c] = &mut blocks[block * pose_count + pose];
                 angle_rad[lane] = of_pose.angles_rad[triangle];
                 [a[lane], b[lane], c[lane]] = maps.blendable(pose, triangle, stretch);
             }
         }
-        let is_limited = limits.iter().any(|limit| limit.is_finite());
-        let range = |(triangle, &limit): (usize, &f64)| {
-            StretchRange::around(maps.poses.iter().map(|pose| pose.stretches[triangle]), limit)
-        };
+        let mut ranges = Vec::new();
+        if limits.iter().any(|limit| limit.is_finite()) {
+            ranges = vec![StretchRange::ALL; layout.count() * LANES];
+            for (triangle, &limit) in limits.iter().enumerate() {
+                let (block, lane) = layout.place(triangle);
+                ranges[block * LANES + lane] =
+                    StretchRange::around(maps.poses.iter().map(|pose| pose.stretches[triangle]), limit);
+            }
+        }
         Self {
             pose_count,
+            layout,
             stretch,
             blocks,
-            ranges: if is_limited {
-                limits.iter().enumerate().map(range).collect()
-            } else {
-                Vec::new()
-            },
+            ranges,
         }
     }
 
     /// The rotation of `triangle` in `pose`.
     pub(super) fn angle_rad(&self, triangle: usize, pose: usize) -> f64 {
-        self.blocks[triangle / LANES * self.pose_count + pose][0][triangle % LANES]
+        let (block, lane) = self.layout.place(triangle);
+        self.blocks[block * self.pose_count + pose][0][lane]
     }
 
     /// What the triangles of `block` want. Triangles past the last get something finite.
@@ -66,8 +97,8 @@ impl Targets {
         if self.stretch == Stretch::Log {
             each(a, b, c, stretch::exponential);
         }
-        if !self.ranges.is_empty() {
-            let mut ranges = self.ranges[block * LANES..].iter();
+        if let Some(ranges) = self.ranges.get(block * LANES..(block + 1) * LANES) {
+            let mut ranges = ranges.iter();
             each(a, b, c, |entries| {
                 ranges.next().map_or(entries, |range| range.clamp(entries))
             });
