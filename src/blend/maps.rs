@@ -61,7 +61,7 @@ impl TriangleMaps {
             Reference::Pose(pose) => pose,
             Reference::Canonical => 0,
         };
-        let pivot_rad: Vec<f64> = maps(pivot).iter().map(|map| PolarSplit::of(map).angle_rad).collect();
+        let pivot_rad: Vec<f64> = maps(pivot).iter().map(PolarSplit::angle_rad_of).collect();
         let mut pose_maps = (0..poses.len())
             .into_par_iter()
             .map(|pose| {

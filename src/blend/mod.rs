@@ -21,6 +21,8 @@
 
 mod anchor;
 pub mod branch;
+mod crowd;
+mod guard;
 mod maps;
 pub mod reference;
 mod region;
@@ -33,6 +35,7 @@ mod targets;
 #[cfg(test)]
 mod tests;
 
+pub use crowd::CrowdScratch;
 pub use rigid::{BlendReport, BlendScratch, RigidBlend, WEIGHT_SUM_TOLERANCE, blend_once};
 
 use crate::solve::SolveError;
@@ -82,6 +85,17 @@ pub struct SoftAnchor {
     pub stiffness: f64,
 }
 
+/// What happens to a frame with triangles that are turned over, or nearly so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FrameGuard {
+    /// They are counted.
+    #[default]
+    Off,
+    /// The frame is replaced by the nearest one in which every triangle keeps a twentieth or so of its smallest area in any
+    /// pose.
+    Repair,
+}
+
 /// A disc on the mesh around a vertex in which the shape is stiffer, or may not be stretched far. Fades smoothly
 /// between half its radius and its radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,6 +123,8 @@ pub struct BlendOptions {
     pub turns: Vec<i32>,
     /// Parts that are stiffer than others; empty (the default) for none.
     pub regions: Vec<Region>,
+    /// Default: [`FrameGuard::Off`].
+    pub guard: FrameGuard,
 }
 
 /// Why there is no blend.

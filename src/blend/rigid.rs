@@ -5,22 +5,19 @@
 //! [`BlendScratch`].
 
 use super::anchor::Anchors;
+use super::guard::{Guard, GuardScratch, START_FRACTIONS};
 use super::maps::TriangleMaps;
 use super::reference::reference_edges;
 use super::region::Paint;
 use super::system::System;
 use super::targets::Targets;
-use super::{BlendError, BlendOptions, Stretch};
+use super::{BlendError, BlendOptions, FrameGuard, Stretch};
 use crate::math::{Point, limit_weights, predicate};
 use crate::mesh::{Topology, geometry};
 use crate::pose::PoseSet;
 
 /// How far from 1 weights may sum; they are then scaled to sum 1.
 pub const WEIGHT_SUM_TOLERANCE: f64 = 1e-6;
-
-/// A double-precision cross product of differences is wrong by at most this fraction of the sizes of its two terms
-/// (Shewchuk 1997): above it the sign is certain.
-const CROSS_ERROR: f64 = 4.0 * f64::EPSILON;
 
 /// N poses, ready to be blended with any weights.
 ///
@@ -53,6 +50,7 @@ pub struct RigidBlend {
     targets: Targets,
     system: System,
     anchors: Anchors,
+    guard: Option<Guard>,
     ambiguous_turns: bool,
 }
 
@@ -62,6 +60,7 @@ pub struct BlendScratch {
     weights: Vec<f64>,
     stretch_weights: Vec<f64>,
     right: Vec<[f64; 2]>,
+    guard: GuardScratch,
 }
 
 /// What there is to say about a frame.
@@ -70,6 +69,8 @@ pub struct BlendScratch {
 pub struct BlendReport {
     /// Triangles that are not positive.
     pub flipped: usize,
+    /// Whether the guard has changed the frame ([`FrameGuard::Repair`]).
+    pub repaired: bool,
 }
 
 /// One blend of `poses`, for those who need no second.
@@ -81,6 +82,23 @@ pub fn blend_once(poses: &PoseSet, options: &BlendOptions, weights: &[f64]) -> R
     let mut positions = Vec::new();
     blend.blend(weights, &mut blend.scratch(), &mut positions)?;
     Ok(positions)
+}
+
+impl BlendScratch {
+    /// The right-hand side that was put together last.
+    pub(super) fn right(&self) -> &[[f64; 2]] {
+        &self.right
+    }
+}
+
+impl BlendReport {
+    /// Both together.
+    pub(super) fn and(self, other: Self) -> Self {
+        Self {
+            flipped: self.flipped + other.flipped,
+            repaired: self.repaired || other.repaired,
+        }
+    }
 }
 
 impl RigidBlend {
@@ -104,13 +122,25 @@ impl RigidBlend {
         let anchors = Anchors::new(poses, &areas, &options.anchor)?;
         let paint = Paint::new(poses, &options.regions)?;
         let maps = TriangleMaps::new(poses, options, &reference, &areas, &topology.components())?;
+        let system = System::new(topology, &reference, &areas, &paint.stiffness, &anchors)?;
+        let guard = match options.guard {
+            FrameGuard::Off => None,
+            FrameGuard::Repair => Some(Guard::new(
+                poses,
+                &reference,
+                &areas,
+                &paint.stiffness,
+                anchors.stiffnesses().collect(),
+            )?),
+        };
         Ok(Self {
             topology: topology.clone(),
             pose_count: poses.len(),
             stretch: options.stretch,
             targets: Targets::new(&maps, options.stretch, &paint.limits),
-            system: System::new(topology, &reference, &areas, &paint.stiffness, &anchors)?,
+            system,
             anchors,
+            guard,
             ambiguous_turns: maps.ambiguous_turns,
         })
     }
@@ -164,6 +194,7 @@ impl RigidBlend {
             weights: Vec::with_capacity(self.pose_count),
             stretch_weights: Vec::with_capacity(self.pose_count),
             right: vec![[0.0; 2]; self.system.right_len()],
+            guard: GuardScratch::default(),
         }
     }
 
@@ -201,24 +232,99 @@ impl RigidBlend {
                 poses: self.pose_count,
             });
         }
-        self.assemble(weights, anchors, scratch)?;
+        self.normalise(weights, scratch)?;
+        self.fit(anchors, scratch, positions)?;
+        self.finish(anchors, scratch, positions)
+    }
+
+    /// The matrix and its factor.
+    pub(super) fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// The least-squares frame for the normalised weights in `scratch`.
+    fn fit(
+        &self,
+        anchors: &[Option<Point>],
+        scratch: &mut BlendScratch,
+        positions: &mut [Point],
+    ) -> Result<(), BlendError> {
+        self.assemble(anchors, scratch);
         self.system.solve(&mut scratch.right)?;
         for (position, &solved) in positions.iter_mut().zip(self.system.solved(&scratch.right)) {
             *position = Point::from(solved);
         }
-        self.anchors.place(&scratch.weights, anchors, positions);
-        let flipped = self.count_flipped(positions)?;
-        Ok(BlendReport { flipped })
+        Ok(())
     }
 
-    /// Checks the weights, and puts the right-hand side together in the scratch.
-    fn assemble(
+    /// Puts solved positions in place, for the normalised weights in `scratch`, looks at them, and repairs what has to be.
+    pub(super) fn finish(
         &self,
+        anchors: &[Option<Point>],
+        scratch: &mut BlendScratch,
+        positions: &mut [Point],
+    ) -> Result<BlendReport, BlendError> {
+        self.anchors.place(&scratch.weights, anchors, positions);
+        let Some(guard) = &self.guard else {
+            let flipped = self.count_flipped(positions)?;
+            return Ok(BlendReport {
+                flipped,
+                repaired: false,
+            });
+        };
+        if guard.all_healthy(positions) {
+            return Ok(BlendReport::default());
+        }
+        let flipped = self.count_flipped(positions)?;
+        let weights = scratch.weights.clone();
+        scratch.guard.set_wanted(positions);
+        let repaired = self.find_valid(guard, &weights, anchors, scratch, positions)?;
+        if repaired {
+            guard.search(&self.system, &mut scratch.guard, positions)?;
+            self.anchors.place(&weights, anchors, positions);
+        } else {
+            positions.copy_from_slice(scratch.guard.wanted());
+        }
+        Ok(BlendReport {
+            flipped: if repaired {
+                self.count_flipped(positions)?
+            } else {
+                flipped
+            },
+            repaired,
+        })
+    }
+
+    /// Finds a frame without inverted triangles between the pose with the largest weight and `weights`. There is none
+    /// only if a pose has triangles so thin that a blend of that pose alone rounds them over.
+    fn find_valid(
+        &self,
+        guard: &Guard,
         weights: &[f64],
         anchors: &[Option<Point>],
         scratch: &mut BlendScratch,
-    ) -> Result<(), BlendError> {
-        self.normalise(weights, &mut scratch.weights)?;
+        positions: &mut [Point],
+    ) -> Result<bool, BlendError> {
+        // The first of the largest: a rule that knows no earlier frame.
+        let heaviest = (0..weights.len())
+            .rev()
+            .max_by(|&a, &b| weights[a].total_cmp(&weights[b]));
+        for fraction in START_FRACTIONS {
+            scratch.weights.clear();
+            scratch.weights.extend(weights.iter().enumerate().map(|(pose, weight)| {
+                let of_pose = if Some(pose) == heaviest { 1.0 - fraction } else { 0.0 };
+                of_pose + fraction * weight
+            }));
+            self.fit(anchors, scratch, positions)?;
+            if guard.is_valid(positions) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Puts the right-hand side together for the normalised weights in `scratch`.
+    pub(super) fn assemble(&self, anchors: &[Option<Point>], scratch: &mut BlendScratch) {
         match self.stretch {
             Stretch::Limited => limit_weights(&scratch.weights, &mut scratch.stretch_weights),
             Stretch::Linear | Stretch::Log => scratch.stretch_weights.clone_from(&scratch.weights),
@@ -231,10 +337,10 @@ impl RigidBlend {
             self.anchors.pulls(&scratch.weights, anchors),
             &mut scratch.right,
         );
-        Ok(())
     }
 
-    fn normalise(&self, weights: &[f64], normalised: &mut Vec<f64>) -> Result<(), BlendError> {
+    /// Checks weights, and puts them into `scratch` so that they sum to 1.
+    pub(super) fn normalise(&self, weights: &[f64], scratch: &mut BlendScratch) -> Result<(), BlendError> {
         if weights.len() != self.pose_count {
             return Err(BlendError::WrongCount {
                 what: "weights",
@@ -248,8 +354,8 @@ impl RigidBlend {
         if !sums_to_one {
             return Err(BlendError::BadWeights { sum });
         }
-        normalised.clear();
-        normalised.extend(weights.iter().map(|weight| weight / sum));
+        scratch.weights.clear();
+        scratch.weights.extend(weights.iter().map(|weight| weight / sum));
         Ok(())
     }
 
@@ -261,9 +367,7 @@ impl RigidBlend {
         let mut flipped = 0;
         for &triangle in self.topology.triangles() {
             let [a, b, c] = geometry::corners(positions, triangle);
-            let (left, right) = ((b.x - a.x) * (c.y - a.y), (b.y - a.y) * (c.x - a.x));
-            // A comparison with NaN is false, and so is one with infinity.
-            if left - right > CROSS_ERROR * (left.abs() + right.abs()) {
+            if predicate::surely_above(a, b, c, 0.0) {
                 continue;
             }
             if ![a, b, c].into_iter().all(crate::math::point::is_finite) {

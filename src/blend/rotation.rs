@@ -39,7 +39,7 @@ pub fn pose_to_pose(poses: &PoseSet, from: usize, to: usize) -> Result<Vec<f64>,
             pose: poses.names()[from].clone(),
             triangle,
         })?;
-        angles_rad.push(PolarSplit::of(&(image * inverse)).angle_rad);
+        angles_rad.push(PolarSplit::angle_rad_of(&(image * inverse)));
     }
 
     let topology = poses.topology();

@@ -70,7 +70,12 @@ impl System {
             let of_corners = geometry::barycentric_gradients(corners).ok_or(BlendError::NotFinite)?;
             let weight = areas[t] * stiffness[t];
             for (a, &from) in triangle.iter().enumerate() {
-                for (b, &to) in triangle.iter().enumerate() {
+                // The factorisation reads the lower triangle only.
+                let below = triangle
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, to)| unknowns[**to] <= unknowns[from]);
+                for (b, &to) in below {
                     normal.add(unknowns[from], unknowns[to], weight * of_corners[a].dot(&of_corners[b]));
                 }
             }
@@ -149,6 +154,13 @@ impl System {
             let entry = &mut right[self.slots[vertex] as usize];
             entry[0] += pull.x;
             entry[1] += pull.y;
+        }
+    }
+
+    /// Puts one value a vertex, in order, into a right-hand side.
+    pub(super) fn set<const K: usize>(&self, values: impl Iterator<Item = [f64; K]>, right: &mut [[f64; K]]) {
+        for (&slot, value) in self.slots.iter().zip(values) {
+            right[slot as usize] = value;
         }
     }
 

@@ -27,14 +27,27 @@ impl PolarSplit {
     /// `atan2(m21 - m12, m11 + m22)`, which needs no iteration.
     #[must_use]
     pub fn of(matrix: &Matrix) -> Self {
-        let angle_rad = libm::atan2(matrix.m21 - matrix.m12, matrix.m11 + matrix.m22);
-        let stretch = rotation(-angle_rad) * matrix;
+        let (along, across) = (matrix.m11 + matrix.m22, matrix.m21 - matrix.m12);
+        let length = libm::hypot(along, across);
+        // The rotation back by the angle, without its sine and cosine. A matrix without a direction is not turned.
+        let (cos, sin) = if length > 0.0 {
+            (along / length, across / length)
+        } else {
+            (1.0, 0.0)
+        };
+        let stretch = Matrix::new(cos, sin, -sin, cos) * matrix;
         // Symmetric up to rounding: the mean of the off-diagonals makes it exact.
         let off_diagonal = 0.5 * (stretch.m12 + stretch.m21);
         Self {
-            angle_rad,
+            angle_rad: Self::angle_rad_of(matrix),
             stretch: Matrix::new(stretch.m11, off_diagonal, off_diagonal, stretch.m22),
         }
+    }
+
+    /// The angle alone.
+    #[must_use]
+    pub fn angle_rad_of(matrix: &Matrix) -> f64 {
+        libm::atan2(matrix.m21 - matrix.m12, matrix.m11 + matrix.m22)
     }
 
     /// The matrix again.

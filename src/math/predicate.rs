@@ -22,6 +22,19 @@ pub fn is_positive(a: Point, b: Point, c: Point) -> bool {
     orientation(a, b, c) == Ordering::Greater
 }
 
+/// Twice the area of a triangle comes out wrong by at most this fraction of the sizes of the two products whose difference
+/// it is (Shewchuk 1997).
+const CROSS_ERROR: f64 = 4.0 * f64::EPSILON;
+
+/// Whether twice the area of the triangle `a b c` is above `floor`, whatever rounding did: `false` where rounding could
+/// decide, and where a coordinate is not finite. Costs no more than the area.
+#[must_use]
+pub fn surely_above(a: Point, b: Point, c: Point, floor: f64) -> bool {
+    let (left, right) = ((b.x - a.x) * (c.y - a.y), (b.y - a.y) * (c.x - a.x));
+    // Infinity minus infinity is not a number, and compares as false.
+    left - right > floor + CROSS_ERROR * (left.abs() + right.abs())
+}
+
 /// Whether the open segments `a b` and `c d` cross in one interior point of both.
 #[must_use]
 pub fn cross_properly(a: Point, b: Point, c: Point, d: Point) -> bool {
