@@ -1,5 +1,9 @@
 //! Properties of the blend, and numbers from an independent implementation (numpy, dense and sparse).
 
+mod guard;
+mod holding;
+mod turns;
+
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;

@@ -1,0 +1,63 @@
+//! A frame allocates nothing: counted, not promised.
+
+use inbetween::blend::{Anchor, BlendOptions, RigidBlend, SoftAnchor, Stretch};
+use inbetween::math::Point;
+use inbetween::mesh::Topology;
+use inbetween::pose::PoseSet;
+
+/// What `work` allocates on this thread; the counter replaces the allocator of the whole test.
+fn allocations(work: impl FnOnce()) -> u64 {
+    allocation_counter::measure(work).count_total
+}
+
+/// A strip of `columns` x 4 vertices in three bends.
+fn poses(columns: usize) -> PoseSet {
+    let quads = (0..3).flat_map(|j| (1..columns).map(move |i| j * columns + i));
+    let triangles = quads.flat_map(|b| [[b - 1, b, b + columns], [b - 1, b + columns, b - 1 + columns]]);
+    let topology = Topology::new(4 * columns, triangles.collect()).expect("a grid");
+    let bend = |curvature: f64| -> Vec<Point> {
+        let place = |v: usize| {
+            let (angle, radius) = ((v % columns) as f64 * curvature, 1.0 / curvature - (v / columns) as f64);
+            Point::new(radius * angle.sin(), -radius * angle.cos())
+        };
+        (0..4 * columns).map(place).collect()
+    };
+    let named = [0.01, 0.05, 0.1].map(|curvature| (format!("{curvature}"), bend(curvature)));
+    PoseSet::new(topology, named.to_vec()).expect("poses")
+}
+
+#[test]
+fn the_counter_counts() {
+    assert!(allocations(|| drop(std::hint::black_box(vec![1_u8]))) > 0);
+}
+
+#[test]
+fn a_frame_allocates_nothing() {
+    let poses = poses(60);
+    let soft = [(0, 1.0), (59, 10.0)].map(|(vertex, stiffness)| SoftAnchor { vertex, stiffness });
+    for stretch in [Stretch::Linear, Stretch::Limited, Stretch::Log] {
+        for anchor in [Anchor::Centroid, Anchor::Vertex(3), Anchor::Soft(soft.to_vec())] {
+            let options = BlendOptions {
+                stretch,
+                anchor,
+                ..BlendOptions::default()
+            };
+            let blend = RigidBlend::new(&poses, &options).expect("a blend");
+            let mut scratch = blend.scratch();
+            let mut positions = Vec::with_capacity(blend.vertex_count());
+            let counted = allocations(|| {
+                for k in 0..10 {
+                    let w = 0.1 * f64::from(k);
+                    let moved = [Some(Point::new(w, 2.0))];
+                    blend
+                        .blend(&[w, 0.7 - w, 0.3], &mut scratch, &mut positions)
+                        .expect("a frame");
+                    blend
+                        .blend_anchored(&[w, 0.7 - w, 0.3], &moved, &mut scratch, &mut positions)
+                        .expect("a frame");
+                }
+            });
+            assert_eq!(counted, 0, "{options:?}");
+        }
+    }
+}
