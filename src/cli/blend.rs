@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context as _, anyhow};
-use inbetween::blend::{BlendOptions, Reference, RigidBlend, Stretch};
+use anyhow::Context as _;
+use inbetween::blend::{BlendOptions, FrameGuard, Reference, RigidBlend, Stretch};
 use inbetween::pipeline::checked_weights;
 use inbetween::pose::PoseSet;
 use serde::Serialize;
@@ -45,9 +45,6 @@ struct FrameText {
 }
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
-    if arguments.frame_guard == "repair" {
-        return Err(anyhow!("--frame-guard repair is not supported yet; leave it off").into());
-    }
     let in_file = || arguments.mapping.display().to_string();
     let poses = PoseSet::from_mapping_json(&read_text(&arguments.mapping)?).with_context(in_file)?;
     let weights = checked_weights(&arguments.weights.0, poses.names()).context("--weights")?;
@@ -70,6 +67,10 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     let options = BlendOptions {
         reference,
         stretch,
+        guard: match arguments.frame_guard.as_str() {
+            "repair" => FrameGuard::Repair,
+            _ => FrameGuard::Off,
+        },
         ..BlendOptions::default()
     };
     let blend = RigidBlend::new(&poses, &options).with_context(in_file)?;
@@ -77,6 +78,9 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     let report = blend
         .blend(&weights, &mut blend.scratch(), &mut vertices)
         .with_context(in_file)?;
+    if report.repaired {
+        verbosity.note("note: some triangles would have been inverted at these weights; the frame was repaired");
+    }
     if report.flipped > 0 {
         verbosity.note(&format!(
             "note: {} triangles are inverted at these weights",

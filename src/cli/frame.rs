@@ -66,11 +66,17 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     for note in character.notes() {
         verbosity.note(&format!("note: {note}"));
     }
-    let frame = match (&arguments.at, &arguments.weights) {
-        (_, Some(Numbers(weights))) => character.frame_of(weights)?,
-        (Some(Numbers(place)), None) => character.frame_at(place)?,
+    let (frame, (_, report)) = match (&arguments.at, &arguments.weights) {
+        (_, Some(Numbers(weights))) => (character.frame_of(weights)?, character.shape_of(weights)?),
+        (Some(Numbers(place)), None) => (character.frame_at(place)?, character.shape_at(place)?),
         (None, None) => return Err(Failure::Usage("give --at or --weights".to_owned())),
     };
+    if report.flipped > 0 {
+        verbosity.note(&format!(
+            "note: {} triangles are inverted in this frame; `guard = \"repair\"` under [blend] repairs it",
+            report.flipped
+        ));
+    }
     let bytes = png_bytes(&frame).map_err(|reason| anyhow::anyhow!("{}: {reason}", arguments.output.display()))?;
     Ok(output.write(&bytes)?)
 }

@@ -5,6 +5,7 @@ use inbetween::render::Frame;
 use inbetween::scene::Animation;
 use rayon::prelude::*;
 
+use super::Verbosity;
 use super::progress::Progress;
 
 /// Frames a thread renders before the batch is written: enough to keep threads busy while one frame is slow.
@@ -37,4 +38,32 @@ pub(crate) fn batch_of(
         .par_iter()
         .map(|number| character.frame(animation, number - 1))
         .collect()
+}
+
+/// Tells of frames with inverted triangles: they show folds, and an animator wants to know where.
+pub(crate) fn tell_inverted(
+    character: &Character,
+    animation: &Animation,
+    numbers: &[usize],
+    verbosity: Verbosity,
+) -> Result<(), PipelineError> {
+    let mut inverted = Vec::new();
+    for &number in numbers {
+        let (_, report) = character.shape_at(&animation.at(animation.time_of_frame(number - 1)))?;
+        if report.flipped > 0 {
+            inverted.push((number, report.flipped));
+        }
+    }
+    if let Some((number, count)) = inverted
+        .iter()
+        .max_by_key(|(number, count)| (*count, std::cmp::Reverse(*number)))
+    {
+        verbosity.note(&format!(
+            "note: {} of {} frames have inverted triangles, frame {number} the most, {count}; `guard = \"repair\"` under \
+             [blend] repairs them",
+            inverted.len(),
+            numbers.len()
+        ));
+    }
+    Ok(())
 }

@@ -153,6 +153,7 @@ fn sequence(
         Ok(())
     })?;
     progress.finish();
+    frames::tell_inverted(&character, animation, &numbers, verbosity)?;
     Ok(())
 }
 
@@ -195,6 +196,7 @@ fn gif(
     )?;
     writer.finish()?;
     progress.finish();
+    frames::tell_inverted(&character, animation, numbers, verbosity)?;
     Ok(())
 }
 
@@ -219,5 +221,6 @@ fn apng(
     )?;
     writer.finish()?;
     progress.finish();
+    frames::tell_inverted(&character, animation, numbers, verbosity)?;
     Ok(())
 }

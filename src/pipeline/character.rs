@@ -2,7 +2,7 @@
 
 use super::drawings::{read_drawings, sharpen};
 use super::{PipelineError, map_drawings, weight_provider, weighting};
-use crate::blend::{self, BlendOptions, RigidBlend};
+use crate::blend::{self, BlendOptions, BlendReport, RigidBlend};
 use crate::input::Drawing;
 use crate::math::Point;
 use crate::pose::Mapping;
@@ -92,14 +92,35 @@ impl Character {
     /// [`PipelineError`] if they do not fit or do not sum to 1.
     pub fn frame_of(&self, weights: &[f64]) -> Result<Frame, PipelineError> {
         let weights = weighting::checked_weights(weights, self.mapping.poses.names())?;
-        let mut positions = Vec::new();
-        self.blend.blend(&weights, &mut self.blend.scratch(), &mut positions)?;
+        let (positions, _) = self.shape_of(&weights)?;
         let shown = texture_weights(&weights, self.texture_sharpness)?;
         let mut frame = self.painter.paint(&positions, &weights, &shown);
         if let Background::Colour(colour) = self.background {
             frame.put_before(colour);
         }
         Ok(frame)
+    }
+
+    /// The vertices of the frame for given weights, and what there is to say about it: the blend without the picture.
+    ///
+    /// # Errors
+    /// As [`Self::frame_of`].
+    pub fn shape_of(&self, weights: &[f64]) -> Result<(Vec<Point>, BlendReport), PipelineError> {
+        let mut positions = Vec::new();
+        let report = self.blend.blend(weights, &mut self.blend.scratch(), &mut positions)?;
+        Ok((positions, report))
+    }
+
+    /// The vertices of the frame at a place of the pose space.
+    ///
+    /// # Errors
+    /// As [`Self::frame_at`].
+    pub fn shape_at(&self, place: &[f64]) -> Result<(Vec<Point>, BlendReport), PipelineError> {
+        let mut weights = Vec::new();
+        self.weights
+            .weights(place, &mut weights)
+            .map_err(PipelineError::Weights)?;
+        self.shape_of(&weights)
     }
 
     /// Frame `index` of an animation, counted from 0.
@@ -112,15 +133,34 @@ impl Character {
 }
 
 fn blend_options(scene: &Scene, mapping: &Mapping) -> BlendOptions {
+    let vertex = |landmark| nearest_vertex(scene, mapping, landmark);
+    let settings = &scene.blend;
     BlendOptions {
-        reference: scene.blend.reference,
-        stretch: scene.blend.stretch,
-        anchor: match scene.blend.anchor {
+        reference: settings.reference,
+        stretch: settings.stretch,
+        anchor: match &settings.anchor {
             Anchor::Centroid => blend::Anchor::Centroid,
-            Anchor::Landmark(landmark) => blend::Anchor::Vertex(nearest_vertex(scene, mapping, landmark)),
+            Anchor::Landmark(landmark) => blend::Anchor::Vertex(vertex(*landmark)),
+            Anchor::Soft(anchors) => {
+                let soft = anchors.iter().map(|anchor| blend::SoftAnchor {
+                    vertex: vertex(anchor.landmark),
+                    stiffness: anchor.stiffness,
+                });
+                blend::Anchor::Soft(soft.collect())
+            }
         },
         turns: scene.poses.iter().map(|pose| pose.turns).collect(),
-        ..BlendOptions::default()
+        regions: settings
+            .regions
+            .iter()
+            .map(|region| blend::Region {
+                vertex: vertex(region.landmark),
+                radius: region.radius,
+                stiffness: region.stiffness,
+                stretch_limit: region.stretch_limit,
+            })
+            .collect(),
+        guard: settings.guard,
     }
 }
 

@@ -1,5 +1,6 @@
 //! From the written scene to the validated one.
 
+mod blending;
 mod landmarks;
 mod playing;
 mod poses;
@@ -10,11 +11,7 @@ use toml::Spanned;
 
 use super::error::{SceneError, SceneProblem};
 use super::file::SceneFile;
-use super::settings::{
-    Anchor, BlendSettings, Holes, InputSettings, MeshSettings, PoseSpaceSettings, Provider, PseudoPose, Radial, Scene,
-    SceneLandmark,
-};
-use crate::blend::{Reference, Stretch};
+use super::settings::{Holes, InputSettings, MeshSettings, PoseSpaceSettings, Provider, PseudoPose, Radial, Scene};
 
 /// The version of the format.
 const VERSION: i64 = 1;
@@ -286,61 +283,6 @@ impl Reader<'_> {
                 |v| (0.0..=1e6).contains(&v),
                 "between 0 and a million",
             )?,
-        })
-    }
-
-    fn blend(&self, written: &SceneFile, names: &[&str], landmarks: &[SceneLandmark]) -> Checked<BlendSettings> {
-        let table = &written.blend;
-        if let Some(guard) = &table.guard {
-            match guard.get_ref().as_str() {
-                "off" => {}
-                "repair" => self.unsupported(guard.span().start, "`guard = \"repair\"`", "set it to \"off\"")?,
-                other => {
-                    return Err(self.fail(
-                        guard.span().start,
-                        SceneProblem::BadChoice {
-                            key: "[blend] guard".to_owned(),
-                            value: other.to_owned(),
-                            allowed: "'off' or 'repair'",
-                        },
-                    ));
-                }
-            }
-        }
-        let reference = match &table.reference {
-            Some(name) if name.get_ref() != "canonical" => {
-                Reference::Pose(self.pose_index(name, "[blend] reference", names)?)
-            }
-            _ => Reference::Canonical,
-        };
-        let anchor = match &table.anchor {
-            Some(name) if name.get_ref() != "centroid" => {
-                let found = landmarks.iter().position(|l| &l.name == name.get_ref());
-                Anchor::Landmark(found.ok_or_else(|| {
-                    self.fail(
-                        name.span().start,
-                        SceneProblem::UnknownLandmark {
-                            name: name.get_ref().clone(),
-                            used_by: "[blend] anchor".to_owned(),
-                        },
-                    )
-                })?)
-            }
-            _ => Anchor::Centroid,
-        };
-        Ok(BlendSettings {
-            reference,
-            stretch: self.choice(
-                &table.stretch,
-                "[blend] stretch",
-                &[
-                    ("linear", Stretch::Linear),
-                    ("limited", Stretch::Limited),
-                    ("log", Stretch::Log),
-                ],
-                "'linear', 'limited' or 'log'",
-            )?,
-            anchor,
         })
     }
 }

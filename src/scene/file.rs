@@ -27,6 +27,8 @@ pub(super) struct SceneFile {
     #[serde(default)]
     pub(super) landmark: Vec<Spanned<LandmarkTable>>,
     #[serde(default)]
+    pub(super) region: Vec<Spanned<RegionTable>>,
+    #[serde(default)]
     pub(super) layer: Vec<Spanned<LayerTable>>,
     #[serde(default)]
     pub(super) animation: AnimationTable,
@@ -62,7 +64,17 @@ pub(super) struct BlendTable {
     pub(super) reference: Option<Spanned<String>>,
     pub(super) stretch: Option<Spanned<String>>,
     pub(super) guard: Option<Spanned<String>>,
-    pub(super) anchor: Option<Spanned<String>>,
+    /// A name, or a list of names and tables.
+    pub(super) anchor: Option<Spanned<Value>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RegionTable {
+    pub(super) landmark: String,
+    pub(super) radius: f64,
+    pub(super) stiffness: Option<f64>,
+    pub(super) stretch_limit: Option<f64>,
 }
 
 #[derive(Debug, Default, Deserialize)]

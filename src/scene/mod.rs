@@ -19,5 +19,5 @@ pub use error::{SceneError, SceneProblem};
 pub use new::{NewPose, scene_text};
 pub use settings::{
     Anchor, Background, BlendSettings, Facing, Holes, InputSettings, MeshSettings, PoseSpaceSettings, Provider,
-    PseudoPose, Radial, Scene, SceneLandmark, ScenePath, ScenePose,
+    PseudoPose, Radial, Region, Scene, SceneLandmark, ScenePath, ScenePose, SoftAnchor,
 };

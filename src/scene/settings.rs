@@ -1,6 +1,6 @@
 //! The validated scene.
 
-use crate::blend::{Reference, Stretch};
+use crate::blend::{FrameGuard, Reference, Stretch};
 use std::path::PathBuf;
 
 use super::Animation;
@@ -128,17 +128,41 @@ impl Default for PoseSpaceSettings {
 }
 
 /// What keeps the blended shape in its place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub enum Anchor {
     /// The area-weighted centroid moves linearly in the weights.
     #[default]
     Centroid,
     /// The landmark of this index does.
     Landmark(usize),
+    /// These landmarks do, as far as the shape gives way.
+    Soft(Vec<SoftAnchor>),
+}
+
+/// A landmark that is drawn to where the weights put it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SoftAnchor {
+    /// The landmark's index.
+    pub landmark: usize,
+    /// How strongly; see [`crate::blend::SoftAnchor::stiffness`].
+    pub stiffness: f64,
+}
+
+/// A part of the shape around a landmark that is stiffer than the rest, or may not be stretched far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Region {
+    /// The landmark's index.
+    pub landmark: usize,
+    /// How far it reaches along the mesh, as a fraction of a pose's diagonal.
+    pub radius: f64,
+    /// What the energy of its triangles is multiplied by; 1 changes nothing.
+    pub stiffness: f64,
+    /// By which factor it may be stretched or squashed more than in any pose; infinite for no limit.
+    pub stretch_limit: f64,
 }
 
 /// How shapes are blended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct BlendSettings {
     /// From which pose.
     pub reference: Reference,
@@ -146,6 +170,10 @@ pub struct BlendSettings {
     pub stretch: Stretch,
     /// What stays in place.
     pub anchor: Anchor,
+    /// What happens to frames with inverted triangles.
+    pub guard: FrameGuard,
+    /// Parts that are stiffer than others.
+    pub regions: Vec<Region>,
 }
 
 /// Whether a drawing is used as it is.

@@ -1,6 +1,7 @@
 use super::*;
+use crate::blend::{FrameGuard, Reference};
 use crate::math::Point;
-use crate::scene::settings::{Background, Facing};
+use crate::scene::settings::{Anchor, Background, BlendSettings, Facing, Region, SoftAnchor};
 
 fn parse(text: &str) -> Result<Scene, SceneError> {
     Scene::parse(text, Path::new("cat/scene.toml"))
@@ -123,7 +124,6 @@ fn keys_of_later_releases_are_refused_by_name() {
         ("[[layer]]\nname = \"arm\"\n", 10, "layer"),
         ("[pose_space]\nbounded = true\n", 11, "bounded"),
         ("[pose_space]\nwalls = [[[0.2, 0.0], [0.2, 0.6]]]\n", 11, "walls"),
-        ("[blend]\nguard = \"repair\"\n", 11, "guard"),
         (
             "[[pose]]\nname = \"c\"\ndeform_of = \"a\"\nat = [5, 5]\n",
             12,
@@ -141,6 +141,54 @@ fn keys_of_later_releases_are_refused_by_name() {
             message.contains(word) && message.contains("not supported yet"),
             "{message}"
         );
+    }
+}
+
+#[test]
+fn anchors_regions_and_guard_are_read() {
+    let marks =
+        "[[landmark]]\nname = \"foot\"\nat = { a = [1, 2] }\n[[landmark]]\nname = \"hand\"\nat = { b = [1, 2] }\n";
+    let scene = parse(&format!(
+        "{TWO}{marks}[blend]\nguard = \"repair\"\nanchor = [\"hand\", {{ landmark = \"foot\", stiffness = 2 }}]\n\
+         [[region]]\nlandmark = \"hand\"\nradius = 0.2\nstretch_limit = 1.5\n"
+    ))
+    .expect("a scene");
+    assert_eq!(scene.blend.guard, FrameGuard::Repair);
+    let soft = [(1, 10.0), (0, 2.0)].map(|(landmark, stiffness)| SoftAnchor { landmark, stiffness });
+    assert_eq!(scene.blend.anchor, Anchor::Soft(soft.to_vec()));
+    assert_eq!(
+        scene.blend.regions,
+        [Region {
+            landmark: 1,
+            radius: 0.2,
+            stiffness: 1.0,
+            stretch_limit: 1.5
+        }]
+    );
+    for (text, line, word) in [
+        ("[blend]\nanchor = [\"hand\", \"nose\"]\n", 17, "'nose'"),
+        ("[blend]\nanchor = []\n", 17, "anchor must be"),
+        (
+            "[blend]\nanchor = [{ landmark = \"hand\", weight = 1 }]\n",
+            17,
+            "anchor must be",
+        ),
+        (
+            "[blend]\nanchor = [{ landmark = \"hand\", stiffness = -1.0 }]\n",
+            17,
+            "stiffness",
+        ),
+        ("[[region]]\nlandmark = \"nose\"\nradius = 1.0\n", 16, "'nose'"),
+        ("[[region]]\nlandmark = \"hand\"\nradius = 0.0\n", 16, "radius"),
+        (
+            "[[region]]\nlandmark = \"hand\"\nradius = 0.1\nstretch_limit = 0.5\n",
+            16,
+            "stretch_limit",
+        ),
+    ] {
+        let (found, message) = refused(&format!("{TWO}{marks}{text}"));
+        assert_eq!(found, Some(line), "{message}");
+        assert!(message.contains(word), "{message}");
     }
 }
 
