@@ -20,45 +20,15 @@ use faer::sparse::{SparseColMat, Triplet};
 use faer::{Conj, Mat, Par, Side};
 use inbetween::blend::{BlendOptions, RigidBlend, Stretch};
 use inbetween::math::Point;
-use inbetween::mesh::Topology;
 use inbetween::pose::PoseSet;
 use inbetween::solve::{SparseCholesky, Triplets};
+use strip::poses;
+
+#[path = "common/strip.rs"]
+mod strip;
 
 /// Columns and rows of the two meshes: 2,000 and 10,000 vertices.
 const SIZES: [(usize, usize); 2] = [(50, 40), (125, 80)];
-
-/// A strip that is bent more from pose to pose, with vertices off the grid.
-fn poses(columns: usize, rows: usize, count: usize) -> PoseSet {
-    let vertex = |i: usize, j: usize| j * columns + i;
-    let mut triangles = Vec::new();
-    for j in 1..rows {
-        for i in 1..columns {
-            let [a, b, c, d] = [vertex(i - 1, j - 1), vertex(i, j - 1), vertex(i, j), vertex(i - 1, j)];
-            triangles.extend(if (i + j) % 2 == 0 {
-                [[a, b, c], [a, c, d]]
-            } else {
-                [[a, b, d], [b, c, d]]
-            });
-        }
-    }
-    let topology = Topology::new(columns * rows, triangles).expect("a grid");
-    let flat: Vec<Point> = (0..columns * rows)
-        .map(|v| {
-            let (x, y) = ((v % columns) as f64, (v / columns) as f64);
-            Point::new(x + 0.3 * (1.7 * y).sin() * (0.9 * x).cos(), y + 0.3 * (2.1 * x).sin())
-        })
-        .collect();
-    let bent = |pose: usize| {
-        let curvature = (0.1 + 1.9 * pose as f64 / count as f64) * std::f64::consts::PI / columns as f64;
-        let place = |p: &Point| {
-            let (sine, cosine) = (curvature * p.x).sin_cos();
-            let radius = 1.0 / curvature + rows as f64 - p.y;
-            Point::new(radius * sine, -radius * cosine)
-        };
-        (format!("pose {pose}"), flat.iter().map(place).collect())
-    };
-    PoseSet::new(topology, (0..count).map(bent).collect()).expect("poses")
-}
 
 /// The entries of a matrix with the mesh's structure: one over edge lengths, the first vertex held.
 fn entries(poses: &PoseSet) -> Vec<(usize, usize, f64)> {
@@ -183,5 +153,41 @@ fn set_up(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, frames, set_up);
+/// A thousand characters of 500 vertices, each with its own weights: one frame of a crowd, on one thread and on all.
+fn crowd(criterion: &mut Criterion) {
+    const CHARACTERS: usize = 1000;
+    let mut group = criterion.benchmark_group("crowd of 1000");
+    group.sample_size(20);
+    let poses = poses(25, 20, 4);
+    let blend = RigidBlend::new(&poses, &BlendOptions::default()).expect("a blend");
+    let weights: Vec<f64> = (0..CHARACTERS)
+        .flat_map(|k| {
+            let t = k as f64 / CHARACTERS as f64;
+            [0.4 - 0.3 * t, 0.3 * t, 0.5, 0.1]
+        })
+        .collect();
+    let mut positions = vec![Point::zeros(); CHARACTERS * blend.vertex_count()];
+    for threads in [1, rayon::current_num_threads()] {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("threads");
+        let mut scratch = blend.crowd_scratch();
+        group.bench_function(format!("{threads} threads"), |b| {
+            b.iter(|| pool.install(|| blend.blend_crowd(&weights, &mut scratch, &mut positions)));
+        });
+    }
+    let mut scratch = blend.scratch();
+    let mut one = Vec::new();
+    group.bench_function("one after the other", |b| {
+        b.iter(|| {
+            for weights in weights.chunks(4) {
+                blend.blend(weights, &mut scratch, &mut one).expect("a frame");
+            }
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, frames, set_up, crowd);
 criterion_main!(benches);

@@ -47,11 +47,17 @@ fn repairing_changes_a_frame_without_a_jump() {
         frames.iter().any(|(_, _, repaired)| !repaired),
         "nothing to leave alone"
     );
-    let step = |w: &[(Vec<Point>, usize, bool)]| largest_difference(&w[0].0, &w[1].0);
-    let largest = |pick: &dyn Fn(&[(Vec<Point>, usize, bool)]) -> bool| {
-        frames.windows(2).filter(|w| pick(w)).map(step).fold(0.0, f64::max)
-    };
-    let (healthy, all) = (largest(&|w| !w[0].2 && !w[1].2), largest(&|_| true));
+    // Each step, and whether both of its frames were left alone.
+    let steps: Vec<(f64, bool)> = frames
+        .windows(2)
+        .map(|w| (largest_difference(&w[0].0, &w[1].0), !w[0].2 && !w[1].2))
+        .collect();
+    let healthy = steps
+        .iter()
+        .filter(|(_, alone)| *alone)
+        .map(|(step, _)| *step)
+        .fold(0.0, f64::max);
+    let all = steps.iter().map(|(step, _)| *step).fold(0.0, f64::max);
     assert!(
         all < 3.0 * healthy,
         "steps of {healthy} where nothing is repaired, of {all} at most"
