@@ -13,7 +13,7 @@
 
 use super::coarse::{CoarseMatch, Form, coarse_matches_to};
 use super::curve::{COARSE_WINDOWS, FINE_WINDOWS, Samples};
-use super::elastic::{Band, MismatchTable, cheapest_path, step_cost};
+use super::elastic::{Band, MismatchTable, cheapest_path, cheapest_start, step_cost};
 use super::frame::{CONTROL_STRIDE, Frame, Model, STIFFNESSES};
 use super::monotone::{CyclicMap, limit_steps, make_increasing};
 use crate::math::{Point, angle};
@@ -262,10 +262,8 @@ impl Task<'_> {
 /// The cheapest match within a band, starting within `reach` columns of the middle of its first row.
 fn best_path(table: &MismatchTable, band: &[(usize, usize)], reach: usize) -> Option<CoarseMatch> {
     let middle = (band[0].0 + band[0].1) / 2;
-    (middle.saturating_sub(reach)..=middle + reach)
-        .filter_map(|start| cheapest_path(table, start, band))
-        .reduce(|a, b| if b.cost < a.cost { b } else { a })
-        .map(|path| CoarseMatch::from_path(table, &path))
+    let start = cheapest_start(table, middle.saturating_sub(reach)..=middle + reach, band)?;
+    cheapest_path(table, start, band).map(|path| CoarseMatch::from_path(table, &path))
 }
 
 /// From parameter `k` of a closed curve to the next, the first following the last.
