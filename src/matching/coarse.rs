@@ -1,6 +1,6 @@
 //! Coarse matches of two whole curves: which starts are worth a closer look, and how alike the curves are.
 
-use super::curve::{COARSE_WINDOWS, Curve, Samples};
+use super::curve::{Curve, Samples};
 use super::elastic::{MismatchTable, Path};
 use super::feature::{SalientPoint, salient_points};
 use super::monotone::CyclicMap;
@@ -35,6 +35,11 @@ impl Form {
         Self { curve, salient }
     }
 
+    /// `count` samples in even steps from the curve's own start on.
+    pub(super) fn even_samples(&self, count: usize) -> Samples {
+        Samples::coarse(&self.curve, self.even_parameters(count))
+    }
+
     /// `count` parameters in even steps from the curve's own start on.
     pub(super) fn even_parameters(&self, count: usize) -> Vec<f64> {
         (0..count).map(|k| self.curve.start + k as f64 / count as f64).collect()
@@ -65,17 +70,19 @@ impl CoarseMatch {
 }
 
 /// The best coarse matches of `first` to `second` with clearly different starts, cheapest first; at least one.
-pub(super) fn coarse_matches(first: &Form, second: &Form, samples: usize, most: usize) -> Vec<CoarseMatch> {
-    let rows = first.even_parameters(samples);
-    let first = Samples::new(&first.curve, rows.clone(), COARSE_WINDOWS);
-    coarse_matches_to(rows, &[first], second, most)
+pub(super) fn coarse_matches(first: &Samples, second: &Samples, most: usize) -> Vec<CoarseMatch> {
+    coarse_matches_to(first.parameters.clone(), std::slice::from_ref(first), second, most)
 }
 
 /// The same for several curves on common rows, which `rows` stand for.
-pub(super) fn coarse_matches_to(rows: Vec<f64>, first: &[Samples], second: &Form, most: usize) -> Vec<CoarseMatch> {
+pub(super) fn coarse_matches_to(
+    rows: Vec<f64>,
+    first: &[Samples],
+    second: &Samples,
+    most: usize,
+) -> Vec<CoarseMatch> {
     let samples = rows.len();
-    let columns = Samples::new(&second.curve, second.even_parameters(samples), COARSE_WINDOWS);
-    let table = MismatchTable::new(rows, first, columns, Vec::new());
+    let table = MismatchTable::new(rows, first, second.clone(), Vec::new());
     let apart = ((APART * samples as f64).round() as usize).max(1);
     distinct_minima(&path_from_each_start(&table), apart, most)
         .into_iter()

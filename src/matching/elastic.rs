@@ -5,7 +5,7 @@
 //!
 //! - the cost of a step is `|ds1 - ds2| * (EVEN_STRETCH + |ds1 - ds2| / (ds1 + ds2)) + TURNING_COST * |turning1 - turning2| *
 //!   (ds1 + ds2) / 2`, summed over the windows
-//!   of [`super::curve::FINE_WINDOWS`] or [`super::curve::COARSE_WINDOWS`], with lengths in perimeters and turning in radians;
+//!   of [`super::curve`], with lengths in perimeters and turning in radians;
 //! - *difference from the source*: steps are taken from a fixed list of slopes between 1/4 and 4, not from all pairs of
 //!   earlier samples, so that a table of n x n samples costs O(n^2) and no slope degenerates.
 //!

@@ -1,7 +1,6 @@
 use std::f64::consts::TAU;
 
 use super::*;
-use crate::matching::curve::FINE_WINDOWS;
 use crate::matching::start::{distinct_minima, path_from_each_start};
 use crate::math::rotation;
 use crate::outline::Ring;
@@ -19,7 +18,7 @@ fn even(count: usize) -> Vec<f64> {
 }
 
 fn compared(first: &Curve, rows: Vec<f64>, second: &Curve, columns: Vec<f64>, forced: Vec<usize>) -> MismatchTable {
-    let samples = |curve: &Curve, parameters: Vec<f64>| Samples::new(curve, parameters, FINE_WINDOWS);
+    let samples = |curve: &Curve, parameters: Vec<f64>| Samples::fine(curve, parameters);
     let first = samples(first, rows.clone());
     MismatchTable::new(rows, &[first], samples(second, columns), forced)
 }
