@@ -4,7 +4,7 @@ use super::curve::{Curve, Samples};
 use super::elastic::{MismatchTable, Path};
 use super::feature::{SalientPoint, salient_points};
 use super::monotone::CyclicMap;
-use super::start::{distinct_minima, path_from_each_start};
+use super::start::cheapest_paths;
 use crate::outline::{Ring, RingError};
 
 /// Starts nearer than this, in perimeters, are one start.
@@ -75,16 +75,11 @@ pub(super) fn coarse_matches(first: &Samples, second: &Samples, most: usize) -> 
 }
 
 /// The same for several curves on common rows, which `rows` stand for.
-pub(super) fn coarse_matches_to(
-    rows: Vec<f64>,
-    first: &[Samples],
-    second: &Samples,
-    most: usize,
-) -> Vec<CoarseMatch> {
+pub(super) fn coarse_matches_to(rows: Vec<f64>, first: &[Samples], second: &Samples, most: usize) -> Vec<CoarseMatch> {
     let samples = rows.len();
     let table = MismatchTable::new(rows, first, second.clone(), Vec::new());
     let apart = ((APART * samples as f64).round() as usize).max(1);
-    distinct_minima(&path_from_each_start(&table), apart, most)
+    cheapest_paths(&table, apart, most)
         .into_iter()
         .map(|path| CoarseMatch::from_path(&table, &path))
         .collect()

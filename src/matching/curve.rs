@@ -129,7 +129,12 @@ impl Samples {
     /// Every `stride`-th sample from `first` on, once around.
     pub(super) fn around(&self, first: usize, stride: usize) -> Self {
         let count = self.parameters.len();
-        let every = |values: &Vec<f32>| (0..count).step_by(stride).map(|k| values[(first + k) % count]).collect();
+        let every = |values: &Vec<f32>| {
+            (0..count)
+                .step_by(stride)
+                .map(|k| values[(first + k) % count])
+                .collect()
+        };
         Self {
             parameters: around(&self.parameters, first, stride),
             turning: self.turning.iter().map(every).collect(),

@@ -14,7 +14,7 @@
 
 mod neighbours;
 
-pub(super) use neighbours::cheapest_start;
+pub(super) use neighbours::{LANES, cheapest_start, path_costs};
 
 use super::curve::{Curve, Samples};
 use crate::math::Point;

@@ -102,7 +102,10 @@ impl<'a> Model<'a> {
 
     /// Every `stride`-th row from `first` on, once around: their parameters, and each curve there.
     pub(super) fn samples(&self, first: usize, stride: usize) -> (Vec<f64>, Vec<Samples>) {
-        let curves = self.curves.iter().map(|curve| curve.measured.fine.around(first, stride));
+        let curves = self
+            .curves
+            .iter()
+            .map(|curve| curve.measured.fine.around(first, stride));
         (around(&self.rows, first, stride), curves.collect())
     }
 

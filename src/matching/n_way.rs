@@ -194,7 +194,10 @@ fn most_central(forms: &[Form]) -> usize {
         return 0;
     }
     let pairs: Vec<(usize, usize)> = (0..count).flat_map(|i| (0..i).map(move |j| (j, i))).collect();
-    let samples: Vec<Samples> = forms.par_iter().map(|form| form.even_samples(OVERVIEW_SAMPLES)).collect();
+    let samples: Vec<Samples> = forms
+        .par_iter()
+        .map(|form| form.even_samples(OVERVIEW_SAMPLES))
+        .collect();
     let costs: Vec<f32> = pairs
         .par_iter()
         .map(|(i, j)| {

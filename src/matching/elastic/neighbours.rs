@@ -9,7 +9,7 @@ use std::ops::RangeInclusive;
 use super::{ColumnLengths, LARGEST_SLOPE, MismatchTable, STEPS, TURNS, cheapest_path, step_price};
 
 /// Starts in one sweep: three vectors of four.
-const LANES: usize = 12;
+pub(in super::super) const LANES: usize = 12;
 
 /// Rows that are kept: those that a step may come from, and the one it goes to.
 const KEPT: usize = LARGEST_SLOPE + 1;
@@ -27,13 +27,7 @@ pub(in super::super) fn cheapest_start(
 ) -> Option<usize> {
     let mut best = (f32::INFINITY, None);
     for first in starts.clone().step_by(LANES) {
-        let costs = match &table.column_lengths {
-            ColumnLengths::Even(lengths) => sweep(table, first, band, lengths),
-            ColumnLengths::Uneven(_) => std::array::from_fn(|lane| {
-                cheapest_path(table, first + lane, band).map_or(f32::INFINITY, |path| path.cost)
-            }),
-        };
-        for (start, cost) in (first..=*starts.end()).zip(costs) {
+        for (start, cost) in (first..=*starts.end()).zip(path_costs(table, first, band)) {
             if cost < best.0 {
                 best = (cost, Some(start));
             }
@@ -42,7 +36,16 @@ pub(in super::super) fn cheapest_start(
     best.1
 }
 
-/// The costs of the cheapest paths from `first` and the starts after it.
+/// The costs of the cheapest paths from `first` and the starts after it, within `band`; infinite where there is none.
+pub(in super::super) fn path_costs(table: &MismatchTable, first: usize, band: &[(usize, usize)]) -> [f32; LANES] {
+    match &table.column_lengths {
+        ColumnLengths::Even(lengths) => sweep(table, first, band, lengths),
+        ColumnLengths::Uneven(_) => {
+            std::array::from_fn(|lane| cheapest_path(table, first + lane, band).map_or(f32::INFINITY, |path| path.cost))
+        }
+    }
+}
+
 fn sweep(
     table: &MismatchTable,
     first: usize,
