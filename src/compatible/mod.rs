@@ -23,13 +23,13 @@ mod simplify;
 mod triangulate;
 
 pub use refine::{RefineError, RefineOptions, RefineReport, refine};
-pub use simplify::{Simplified, SimplifyError, SimplifyOptions, SimplifyReport, simplify};
+pub use simplify::{Simplification, Simplified, SimplifyError, SimplifyOptions, SimplifyReport, simplify};
 pub use triangulate::{
     Feature, FeaturePath, Features, PathEnd, TriangulateError, TriangulateReport, triangulate, triangulate_features,
 };
 
 use crate::math::Point;
-use crate::mesh::Topology;
+use crate::mesh::{Topology, geometry};
 
 /// A compatible triangulation: one topology embedded in N poses.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,4 +46,16 @@ pub struct CompatibleMesh {
     pub paths: Vec<Vec<usize>>,
     /// Interior vertices that the triangulation itself had to add.
     pub steiner: usize,
+}
+
+impl CompatibleMesh {
+    /// Whether it has fewer Steiner points than another, or as many and a larger smallest angle.
+    #[must_use]
+    pub fn is_sparer_than(&self, other: &Self) -> bool {
+        let smallest = |mesh: &Self| {
+            let angles = geometry::worst_angles_deg(&mesh.positions, mesh.topology.triangles());
+            angles.first().copied().unwrap_or(0.0)
+        };
+        self.steiner < other.steiner || (self.steiner == other.steiner && smallest(self) > smallest(other))
+    }
 }

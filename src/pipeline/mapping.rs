@@ -4,7 +4,7 @@ use super::landmarks::{self, Landmarks};
 use super::triangulation::{self, Labels, LandmarkLabel};
 use super::{MappingReport, PipelineError, Stage};
 use crate::compatible::{
-    CompatibleMesh, RefineOptions, SimplifyError, SimplifyOptions, TriangulateReport, refine, simplify,
+    CompatibleMesh, RefineOptions, Simplification, SimplifyError, SimplifyOptions, TriangulateReport, refine,
     triangulate_features,
 };
 use crate::input::Drawing;
@@ -61,7 +61,10 @@ pub fn map_drawings_observed(
         .filter_map(|landmark| everywhere(landmark, &matched.correspondences[0]))
         .collect();
     let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
-    let simplified = simplify(&outlines, &matched.correspondences, &pinned, &options)
+    let mut simplification = Simplification::new(&outlines, &matched.correspondences, &pinned, &options)
+        .map_err(|error| simplify_refusal(&names, error))?;
+    let mut simplified = simplification
+        .polygons()
         .map_err(|error| simplify_refusal(&names, error))?;
 
     begins(Stage::Triangulation);
@@ -70,7 +73,21 @@ pub fn map_drawings_observed(
         .iter()
         .map(|at| at.iter().zip(&measured).map(|(&t, outline)| outline.at(t)).collect())
         .collect();
-    let bare = bare_mesh(scene, drawings, &simplified.polygons, &landmarks, &anchors)?;
+    let mut bare = bare_mesh(scene, drawings, &simplified.polygons, &landmarks, &anchors)?;
+    for _ in 0..Simplification::VARIATIONS {
+        if bare.mesh.steiner == 0 {
+            break;
+        }
+        let Some(varied) = simplification.vary(&bare.mesh) else {
+            continue;
+        };
+        if let Ok(other) = bare_mesh(scene, drawings, &varied.polygons, &landmarks, &anchors)
+            && other.mesh.is_sparer_than(&bare.mesh)
+        {
+            simplification.keep();
+            (bare, simplified) = (other, varied);
+        }
+    }
     notes.extend(bare.notes);
 
     begins(Stage::Refinement);
