@@ -49,13 +49,16 @@ pub struct CompatibleMesh {
 }
 
 impl CompatibleMesh {
-    /// Whether it has fewer Steiner points than another, or as many and a larger smallest angle.
+    /// Whether it has fewer Steiner points than another mesh of the same outlines, or as many and less area.
     #[must_use]
     pub fn is_sparer_than(&self, other: &Self) -> bool {
-        let smallest = |mesh: &Self| {
-            let angles = geometry::worst_angles_deg(&mesh.positions, mesh.topology.triangles());
-            angles.first().copied().unwrap_or(0.0)
+        let area = |mesh: &Self, pose: usize| -> f64 {
+            let corners = |t: &[usize; 3]| geometry::corners(&mesh.positions[pose], *t);
+            let triangles = mesh.topology.triangles().iter();
+            triangles.map(|t| geometry::signed_area(corners(t))).sum()
         };
-        self.steiner < other.steiner || (self.steiner == other.steiner && smallest(self) > smallest(other))
+        let poses = 0..self.positions.len().min(other.positions.len());
+        let growth: f64 = poses.map(|pose| area(self, pose) / area(other, pose) - 1.0).sum();
+        self.steiner < other.steiner || (self.steiner == other.steiner && growth < 0.0)
     }
 }

@@ -18,6 +18,10 @@ use crate::scene::Scene;
 /// of it.
 const FINER_LINES: [f64; 4] = [1.0, 0.25, 0.0625, 0.0];
 
+/// A variation of the simplification with fewer Steiner points is kept if the low angles of its refined mesh are at least
+/// this share of the first one's: good triangles are worth more than few points.
+const VARIED_ANGLES: f64 = 0.97;
+
 /// Maps the drawings of a scene onto one another.
 ///
 /// # Errors
@@ -74,6 +78,7 @@ pub fn map_drawings_observed(
         .map(|at| at.iter().zip(&measured).map(|(&t, outline)| outline.at(t)).collect())
         .collect();
     let mut bare = bare_mesh(scene, drawings, &simplified.polygons, &landmarks, &anchors)?;
+    let mut first = None;
     for _ in 0..Simplification::VARIATIONS {
         if bare.mesh.steiner == 0 {
             break;
@@ -85,14 +90,24 @@ pub fn map_drawings_observed(
             && other.mesh.is_sparer_than(&bare.mesh)
         {
             simplification.keep();
-            (bare, simplified) = (other, varied);
+            let before = std::mem::replace(&mut bare, other);
+            let before = (before, std::mem::replace(&mut simplified, varied));
+            first = first.or(Some(before));
         }
     }
-    notes.extend(bare.notes);
 
     begins(Stage::Refinement);
     let options = RefineOptions::default().with_edge_length(scene.mesh.edge_length);
-    let (mesh, refinement) = refine(&bare.mesh, &options).map_err(|error| PipelineError::stage(&names, None, error))?;
+    let refined = |bare: &Bare| refine(&bare.mesh, &options).map_err(|error| PipelineError::stage(&names, None, error));
+    let (mut mesh, mut refinement) = refined(&bare)?;
+    if let Some((bare_first, simplified_first)) = first {
+        let (mesh_first, refinement_first) = refined(&bare_first)?;
+        if refinement.low_angle_deg < VARIED_ANGLES * refinement_first.low_angle_deg {
+            (mesh, refinement) = (mesh_first, refinement_first);
+            (bare, simplified) = (bare_first, simplified_first);
+        }
+    }
+    notes.extend(bare.notes);
     let placed = landmarks.placed(&anchors, &mesh);
     let poses = PoseSet::new(mesh.topology, names.iter().cloned().zip(mesh.positions).collect())
         .map_err(|error| PipelineError::stage(&names, None, error))?;

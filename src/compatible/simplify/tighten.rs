@@ -49,9 +49,8 @@ fn pulled(rings: &[Vec<Point>], ring: usize, vertex: usize, original: &OriginalR
     let low = before.inf(&at).inf(&after.inf(&target));
     let high = before.sup(&at).sup(&after.sup(&target));
     let slack = TOUCHING * (high - low).norm();
-    let near = |p: &Point| {
-        p.x >= low.x - slack && p.x <= high.x + slack && p.y >= low.y - slack && p.y <= high.y + slack
-    };
+    let near =
+        |p: &Point| p.x >= low.x - slack && p.x <= high.x + slack && p.y >= low.y - slack && p.y <= high.y + slack;
     let obstacles: Vec<Point> = original
         .points()
         .iter()
