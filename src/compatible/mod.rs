@@ -23,13 +23,13 @@ mod simplify;
 mod triangulate;
 
 pub use refine::{RefineError, RefineOptions, RefineReport, refine};
-pub use simplify::{Simplified, SimplifyError, SimplifyOptions, SimplifyReport, simplify};
+pub use simplify::{Simplification, Simplified, SimplifyError, SimplifyOptions, SimplifyReport, simplify};
 pub use triangulate::{
     Feature, FeaturePath, Features, PathEnd, TriangulateError, TriangulateReport, triangulate, triangulate_features,
 };
 
 use crate::math::Point;
-use crate::mesh::Topology;
+use crate::mesh::{Topology, geometry};
 
 /// A compatible triangulation: one topology embedded in N poses.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,4 +46,19 @@ pub struct CompatibleMesh {
     pub paths: Vec<Vec<usize>>,
     /// Interior vertices that the triangulation itself had to add.
     pub steiner: usize,
+}
+
+impl CompatibleMesh {
+    /// Whether it has fewer Steiner points than another mesh of the same outlines, or as many and less area.
+    #[must_use]
+    pub fn is_sparer_than(&self, other: &Self) -> bool {
+        let area = |mesh: &Self, pose: usize| -> f64 {
+            let corners = |t: &[usize; 3]| geometry::corners(&mesh.positions[pose], *t);
+            let triangles = mesh.topology.triangles().iter();
+            triangles.map(|t| geometry::signed_area(corners(t))).sum()
+        };
+        let poses = 0..self.positions.len().min(other.positions.len());
+        let growth: f64 = poses.map(|pose| area(self, pose) / area(other, pose) - 1.0).sum();
+        self.steiner < other.steiner || (self.steiner == other.steiner && growth < 0.0)
+    }
 }

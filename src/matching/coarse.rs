@@ -1,10 +1,10 @@
 //! Coarse matches of two whole curves: which starts are worth a closer look, and how alike the curves are.
 
-use super::curve::{COARSE_WINDOWS, Curve, Samples};
+use super::curve::{Curve, Samples};
 use super::elastic::{MismatchTable, Path};
 use super::feature::{SalientPoint, salient_points};
 use super::monotone::CyclicMap;
-use super::start::{distinct_minima, path_from_each_start};
+use super::start::cheapest_paths;
 use crate::outline::{Ring, RingError};
 
 /// Starts nearer than this, in perimeters, are one start.
@@ -33,6 +33,11 @@ impl Form {
     fn of(curve: Curve) -> Self {
         let salient = salient_points(&curve);
         Self { curve, salient }
+    }
+
+    /// `count` samples in even steps from the curve's own start on.
+    pub(super) fn even_samples(&self, count: usize) -> Samples {
+        Samples::coarse(&self.curve, self.even_parameters(count))
     }
 
     /// `count` parameters in even steps from the curve's own start on.
@@ -65,19 +70,16 @@ impl CoarseMatch {
 }
 
 /// The best coarse matches of `first` to `second` with clearly different starts, cheapest first; at least one.
-pub(super) fn coarse_matches(first: &Form, second: &Form, samples: usize, most: usize) -> Vec<CoarseMatch> {
-    let rows = first.even_parameters(samples);
-    let first = Samples::new(&first.curve, rows.clone(), COARSE_WINDOWS);
-    coarse_matches_to(rows, &[first], second, most)
+pub(super) fn coarse_matches(first: &Samples, second: &Samples, most: usize) -> Vec<CoarseMatch> {
+    coarse_matches_to(first.parameters.clone(), std::slice::from_ref(first), second, most)
 }
 
 /// The same for several curves on common rows, which `rows` stand for.
-pub(super) fn coarse_matches_to(rows: Vec<f64>, first: &[Samples], second: &Form, most: usize) -> Vec<CoarseMatch> {
+pub(super) fn coarse_matches_to(rows: Vec<f64>, first: &[Samples], second: &Samples, most: usize) -> Vec<CoarseMatch> {
     let samples = rows.len();
-    let columns = Samples::new(&second.curve, second.even_parameters(samples), COARSE_WINDOWS);
-    let table = MismatchTable::new(rows, first, columns, Vec::new());
+    let table = MismatchTable::new(rows, first, second.clone(), Vec::new());
     let apart = ((APART * samples as f64).round() as usize).max(1);
-    distinct_minima(&path_from_each_start(&table), apart, most)
+    cheapest_paths(&table, apart, most)
         .into_iter()
         .map(|path| CoarseMatch::from_path(&table, &path))
         .collect()

@@ -4,25 +4,17 @@ use crate::math::{Point, angle};
 use crate::outline::{ArcLength, Ring, RingError};
 
 /// Half-windows over which turning is measured, as fractions of the perimeter, with the weight each has in the match.
-pub(super) type Windows = &'static [(f64, f32)];
+type Windows = &'static [(f64, f32)];
 
 /// Windows of the fine match.
 ///
 /// Fine detail is the signal: on silhouettes warped by known maps, smoothed outlines match worse. The longest window
 /// counts half; it is what holds a match in place when the outline is noisy.
-pub(super) const FINE_WINDOWS: Windows = &[(0.003, 1.0), (0.006, 1.0), (0.012, 1.0), (0.025, 0.5)];
+const FINE_WINDOWS: Windows = &[(0.003, 1.0), (0.006, 1.0), (0.012, 1.0), (0.025, 0.5)];
 
-/// Windows of the coarse match, which decides what corresponds to what. The long ones see whole limbs: of unlike drawings
-/// only those are alike.
-pub(super) const COARSE_WINDOWS: Windows = &[
-    (0.003, 1.0),
-    (0.006, 1.0),
-    (0.012, 1.0),
-    (0.025, 0.5),
-    (0.05, 1.0),
-    (0.1, 1.0),
-    (0.2, 1.0),
-];
+/// Windows of the coarse match besides those. It decides what corresponds to what, and long windows see whole limbs: of
+/// unlike drawings only those are alike.
+const LONG_WINDOWS: Windows = &[(0.05, 1.0), (0.1, 1.0), (0.2, 1.0)];
 
 /// Even samples that stand in for the ring when positions are asked for: a twentieth of a percent of the perimeter.
 const FINE_SAMPLES: usize = 2048;
@@ -71,10 +63,10 @@ impl Curve {
         a + (b - a) * along
     }
 
-    /// The turning at parameter `t` over a half-window: the angle between the chords to the points that far behind and
-    /// ahead, in radians.
-    pub(super) fn turning_rad(&self, t: f64, window: f64) -> f64 {
-        let (here, behind, ahead) = (self.arc.at(t), self.arc.at(t - window), self.arc.at(t + window));
+    /// The turning at parameter `t`, whose point is `here`, over a half-window: the angle between the chords to the points
+    /// that far behind and ahead, in radians.
+    fn turning_rad(&self, here: Point, t: f64, window: f64) -> f64 {
+        let (behind, ahead) = (self.arc.at(t - window), self.arc.at(t + window));
         angle::between(here - behind, ahead - here)
     }
 
@@ -86,10 +78,17 @@ impl Curve {
             ((t + reach) * count).ceil() as i64,
         );
         let mut best = (f64::INFINITY, t);
+        // What is this much farther away begins no segment that comes nearer than the point at `t`: chords are no longer
+        // than their arcs.
+        let within = (self.at(t) - p).norm() + 1.5 / count;
         for k in first..last {
             let index = k.rem_euclid(FINE_SAMPLES as i64) as usize;
+            let start = self.fine[index];
+            if (start - p).norm_squared() > within * within {
+                continue;
+            }
             let (along, distance) =
-                crate::math::point::nearest_on_segment(p, self.fine[index], self.fine[(index + 1) % FINE_SAMPLES]);
+                crate::math::point::nearest_on_segment(p, start, self.fine[(index + 1) % FINE_SAMPLES]);
             if distance < best.0 {
                 best = (distance, (k as f64 + along) / count);
             }
@@ -108,17 +107,60 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Measures `curve` at `parameters`.
-    pub(super) fn new(curve: &Curve, parameters: Vec<f64>, windows: Windows) -> Self {
-        let over = |(window, weight): &(f64, f32)| {
-            let turning = |t: &f64| *weight * curve.turning_rad(*t, *window) as f32;
-            parameters.iter().map(turning).collect()
-        };
+    /// Measures `curve` at `parameters` for a fine match.
+    pub(super) fn fine(curve: &Curve, parameters: Vec<f64>) -> Self {
         Self {
-            turning: windows.iter().map(over).collect(),
+            turning: turning(curve, &parameters, FINE_WINDOWS),
             parameters,
         }
     }
+
+    /// Measures `curve` at `parameters` for a coarse match.
+    pub(super) fn coarse(curve: &Curve, parameters: Vec<f64>) -> Self {
+        Self::fine(curve, parameters).with_long_windows(curve)
+    }
+
+    /// What a coarse match asks for besides.
+    pub(super) fn with_long_windows(mut self, curve: &Curve) -> Self {
+        self.turning.extend(turning(curve, &self.parameters, LONG_WINDOWS));
+        self
+    }
+
+    /// Every `stride`-th sample from `first` on, once around.
+    pub(super) fn around(&self, first: usize, stride: usize) -> Self {
+        let count = self.parameters.len();
+        let every = |values: &Vec<f32>| {
+            (0..count)
+                .step_by(stride)
+                .map(|k| values[(first + k) % count])
+                .collect()
+        };
+        Self {
+            parameters: around(&self.parameters, first, stride),
+            turning: self.turning.iter().map(every).collect(),
+        }
+    }
+}
+
+/// Every `stride`-th of a closed curve's parameters from `first` on, once around; whole turns are kept.
+pub(super) fn around(parameters: &[f64], first: usize, stride: usize) -> Vec<f64> {
+    let count = parameters.len();
+    (0..count)
+        .step_by(stride)
+        .map(|k| parameters[(first + k) % count] + ((first + k) / count) as f64)
+        .collect()
+}
+
+/// By window, the weighted turning at each of the parameters.
+fn turning(curve: &Curve, parameters: &[f64], windows: Windows) -> Vec<Vec<f32>> {
+    let mut turning = vec![Vec::with_capacity(parameters.len()); windows.len()];
+    for &t in parameters {
+        let here = curve.arc.at(t);
+        for (&(window, weight), values) in windows.iter().zip(&mut turning) {
+            values.push(weight * curve.turning_rad(here, t, window) as f32);
+        }
+    }
+    turning
 }
 
 /// The fine sample before `t`, and how far `t` is towards the next.
@@ -137,8 +179,9 @@ mod tests {
         let ring = Ring::new([[5.0, 5.0], [9.0, 5.0], [9.0, 9.0], [5.0, 9.0]].map(Point::from)).expect("a ring");
         let curve = Curve::new(&ring).expect("a curve");
         assert!((curve.at(0.0) - Point::new(-0.125, -0.125)).norm() < 1e-12);
-        assert!((curve.turning_rad(0.25, 0.003) - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
-        assert!(curve.turning_rad(0.125, 0.003).abs() < 1e-9);
+        let turning = |t: f64| curve.turning_rad(curve.at(t), t, 0.003);
+        assert!((turning(0.25) - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
+        assert!(turning(0.125).abs() < 1e-9);
         assert!((curve.nearest_within(Point::new(0.05, -0.3), 0.1, 0.2) - 0.175).abs() < 1e-9);
         assert_eq!(curve.nearest_within(Point::new(0.3, -0.3), 0.1, 0.05), 0.1 + 0.05);
     }

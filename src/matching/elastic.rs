@@ -5,12 +5,16 @@
 //!
 //! - the cost of a step is `|ds1 - ds2| * (EVEN_STRETCH + |ds1 - ds2| / (ds1 + ds2)) + TURNING_COST * |turning1 - turning2| *
 //!   (ds1 + ds2) / 2`, summed over the windows
-//!   of [`super::curve::FINE_WINDOWS`] or [`super::curve::COARSE_WINDOWS`], with lengths in perimeters and turning in radians;
+//!   of [`super::curve`], with lengths in perimeters and turning in radians;
 //! - *difference from the source*: steps are taken from a fixed list of slopes between 1/4 and 4, not from all pairs of
 //!   earlier samples, so that a table of n x n samples costs O(n^2) and no slope degenerates.
 //!
 //! The samples need not be even: with landmarks, each arc between two of them is sampled with equal counts on both
 //! curves, and the path is made to pass through every landmark.
+
+mod neighbours;
+
+pub(super) use neighbours::{LANES, cheapest_start, path_costs};
 
 use super::curve::{Curve, Samples};
 use crate::math::Point;
@@ -38,6 +42,33 @@ pub(super) struct MismatchTable {
     values: Vec<f32>,
     /// Rows that are matched to the column of the same number.
     forced: Vec<usize>,
+    /// Entry `[a][i]`: the length of the step of `a` rows that ends at row `i`, counted cyclically.
+    row_lengths: [Vec<f32>; LARGEST_SLOPE + 1],
+    column_lengths: ColumnLengths,
+}
+
+/// How long steps of columns are.
+#[derive(Debug, Clone)]
+enum ColumnLengths {
+    /// Entry `b`: of `b` columns, wherever they are.
+    Even([f32; LARGEST_SLOPE + 1]),
+    /// Entry `[b][j]`: of `b` columns that end at column `j`, for [`TURNS`] turns.
+    Uneven([Vec<f32>; LARGEST_SLOPE + 1]),
+}
+
+impl ColumnLengths {
+    fn new(columns: &[f64]) -> Self {
+        let lengths = step_lengths(columns, TURNS);
+        // Equal but for rounding.
+        let is_even = lengths[1]
+            .iter()
+            .all(|length| (length - lengths[1][0]).abs() < 1e-5 * length);
+        if is_even {
+            Self::Even(lengths.map(|of_step| of_step[0]))
+        } else {
+            Self::Uneven(lengths)
+        }
+    }
 }
 
 impl MismatchTable {
@@ -67,6 +98,8 @@ impl MismatchTable {
             }
         }
         Self {
+            row_lengths: step_lengths(&rows, 1),
+            column_lengths: ColumnLengths::new(&second.parameters),
             rows,
             columns: second.parameters,
             values,
@@ -192,14 +225,6 @@ pub(super) fn cheapest_path(table: &MismatchTable, start: usize, band: &[(usize,
     let mut cost = vec![f32::INFINITY; total];
     let mut step_to = vec![0_u32; total];
     cost[offsets[0] + start - band[0].0] = 0.0;
-    let row_lengths = step_lengths(|k| table.row_parameter(k), rows, 1);
-    let column_lengths = step_lengths(|k| table.column_parameter(k), columns, TURNS);
-
-    // Equal but for rounding.
-    let is_even = column_lengths[1]
-        .iter()
-        .all(|length| (length - column_lengths[1][0]).abs() < 1e-5 * length);
-
     let mut forced = table.forced.iter().copied().peekable();
     // A step may not jump over a row that is forced.
     let mut earliest = 0;
@@ -220,18 +245,18 @@ pub(super) fn cheapest_path(table: &MismatchTable, start: usize, band: &[(usize,
             }
             let span = |slice: usize| first - slice..end - slice;
             let before = &done[offsets[i - a]..][span(before_low + b)];
-            let ds1 = row_lengths[a][i % rows];
-            let ds2 = &column_lengths[b][span(0)];
+            let ds1 = table.row_lengths[a][i % rows];
+            let ds2 = match &table.column_lengths {
+                ColumnLengths::Even(lengths) => &lengths[b..=b],
+                ColumnLengths::Uneven(lengths) => &lengths[b][span(0)],
+            };
             let (costs, chosen) = (&mut costs[span(band[i].0)], &mut chosen[span(band[i].0)]);
             // The mismatch along the step: at its end, and at the nodes nearest to its inner even divisions.
             let divisions = a.max(b);
             let at = |inner: usize| &table.mismatches(i - inner * a / divisions)[span(inner * b / divisions)];
             let share = 0.5 / divisions as f32;
             let step = index as u32;
-            let mut lengths = Lengths { ds1, ds2, share };
-            if is_even {
-                lengths.ds2 = &ds2[..1];
-            }
+            let lengths = Lengths { ds1, ds2, share };
             match divisions {
                 1 => try_step(costs, chosen, before, lengths, step, [at(0)]),
                 2 => try_step(costs, chosen, before, lengths, step, [at(0), at(1)]),
@@ -285,10 +310,7 @@ fn try_step<const N: usize>(
     let count = costs.len();
     let (chosen, before) = (&mut chosen[..count], &before[..count]);
     let mismatches = mismatches.map(|slice| &slice[..count]);
-    let price = |ds2: f32| {
-        let (both, stretch) = (ds1 + ds2, (ds1 - ds2).abs());
-        (share * both, stretch * (EVEN_STRETCH + stretch / both))
-    };
+    let price = |ds2: f32| step_price(ds1, ds2, share);
     let mut lower = |k: usize, (factor, fixed): (f32, f32)| {
         let mismatch: f32 = mismatches.iter().map(|slice| slice[k]).sum();
         let sum = before[k] + mismatch * factor + fixed;
@@ -306,6 +328,12 @@ fn try_step<const N: usize>(
     }
 }
 
+/// What a step with these lengths costs for each unit of the mismatches along it, and whatever they are.
+fn step_price(ds1: f32, ds2: f32, share: f32) -> (f32, f32) {
+    let (both, stretch) = (ds1 + ds2, (ds1 - ds2).abs());
+    (share * both, stretch * (EVEN_STRETCH + stretch / both))
+}
+
 /// The cost of a step over which the weighted turning differs by `turning_rad` and the lengths are `ds1` and `ds2`.
 pub(super) fn step_cost(turning_rad: f64, ds1: f64, ds2: f64) -> f64 {
     let (both, stretch) = (ds1 + ds2, (ds1 - ds2).abs());
@@ -313,11 +341,16 @@ pub(super) fn step_cost(turning_rad: f64, ds1: f64, ds2: f64) -> f64 {
 }
 
 /// Entry `[a][k]`: the length of the step of `a` samples that ends at sample `k`, for some turns of samples.
-fn step_lengths(parameter: impl Fn(usize) -> f64, count: usize, turns: usize) -> [Vec<f32>; LARGEST_SLOPE + 1] {
+fn step_lengths(parameters: &[f64], turns: usize) -> [Vec<f32>; LARGEST_SLOPE + 1] {
+    let count = parameters.len();
     std::array::from_fn(|a| {
-        (0..turns * count)
-            .map(|k| (parameter(k + LARGEST_SLOPE * count) - parameter(k + LARGEST_SLOPE * count - a)) as f32)
-            .collect()
+        let length = |k: usize| {
+            let before = k + LARGEST_SLOPE * count - a;
+            let turns = LARGEST_SLOPE - before / count;
+            (parameters[k] + turns as f64 - parameters[before % count]) as f32
+        };
+        let once: Vec<f32> = (0..count).map(length).collect();
+        once.repeat(turns)
     })
 }
 

@@ -17,7 +17,8 @@
 use rayon::prelude::*;
 
 use super::coarse::{Form, coarse_matches};
-use super::frame::{Frame, Model};
+use super::curve::Samples;
+use super::frame::{Frame, Model, ModelCurve};
 use super::landmark::{Landmark, validated};
 use super::monotone::CyclicMap;
 use super::pair::{PairMatch, Pin, match_pose};
@@ -149,6 +150,7 @@ pub fn match_rings(rings: &[Ring], landmarks: &[Landmark], options: &MatchOption
             (0..count).map(of_pose).collect()
         })
         .collect();
+    let reference_samples = forms[reference].even_samples(MIRROR_SAMPLES);
     let poses = (0..count)
         .into_par_iter()
         .map(|pose| {
@@ -160,7 +162,7 @@ pub fn match_rings(rings: &[Ring], landmarks: &[Landmark], options: &MatchOption
             let reflection_ratio = if pose == reference || skip {
                 1.0
             } else {
-                reflection_ratio(&forms[reference], &rings[pose], &forms[pose])
+                reflection_ratio((&forms[reference], &reference_samples), &rings[pose], &forms[pose])
             };
             let (cost, mismatch) = match &matches[pose] {
                 Some(matched) => (matched.cost, matched.mismatch.clone()),
@@ -192,10 +194,14 @@ fn most_central(forms: &[Form]) -> usize {
         return 0;
     }
     let pairs: Vec<(usize, usize)> = (0..count).flat_map(|i| (0..i).map(move |j| (j, i))).collect();
+    let samples: Vec<Samples> = forms
+        .par_iter()
+        .map(|form| form.even_samples(OVERVIEW_SAMPLES))
+        .collect();
     let costs: Vec<f32> = pairs
         .par_iter()
         .map(|(i, j)| {
-            let matches = coarse_matches(&forms[*i], &forms[*j], OVERVIEW_SAMPLES, 1);
+            let matches = coarse_matches(&samples[*i], &samples[*j], 1);
             matches.first().map_or(f32::INFINITY, |matched| matched.cost)
         })
         .collect();
@@ -213,7 +219,7 @@ fn most_central(forms: &[Form]) -> usize {
 /// reflection costs clearly more in the match itself, since a bent symmetric form may be nearer to its reflection.
 ///
 /// Facing left or right is a matter of the whole form, which the elastic cost alone, mostly fine detail, hardly shows.
-fn reflection_ratio(reference: &Form, ring: &Ring, form: &Form) -> f64 {
+fn reflection_ratio(reference: (&Form, &Samples), ring: &Ring, form: &Form) -> f64 {
     let Ok(mirrored) = Form::mirrored(ring) else {
         return 1.0;
     };
@@ -239,16 +245,16 @@ struct Fit {
 
 /// The least root mean square distance, relative to the second form's size, between the points that any of the best
 /// coarse matches pairs, over all similarities.
-fn best_fit(first: &Form, second: &Form) -> Fit {
-    let matches = coarse_matches(first, second, MIRROR_SAMPLES, MIRROR_CANDIDATES);
+fn best_fit((first, samples): (&Form, &Samples), second: &Form) -> Fit {
+    let matches = coarse_matches(samples, &second.even_samples(MIRROR_SAMPLES), MIRROR_CANDIDATES);
     let cost = matches.first().map_or(f32::INFINITY, |matched| matched.cost);
     let distance = matches
         .iter()
         .map(|matched| {
-            let pairs: Vec<(Point, Point)> = first
-                .even_parameters(MIRROR_SAMPLES)
-                .into_iter()
-                .map(|t| (first.curve.at(t), second.curve.at(matched.map.at(t))))
+            let pairs: Vec<(Point, Point)> = samples
+                .parameters
+                .iter()
+                .map(|t| (first.curve.at(*t), second.curve.at(matched.map.at(*t))))
                 .collect();
             let count = pairs.len() as f64;
             let centre = pairs.iter().fold((Point::zeros(), Point::zeros()), |c, (a, b)| {
@@ -326,7 +332,11 @@ fn match_some(
     let pins: Vec<Vec<Pin>> = (0..forms.len())
         .map(|pose| pins(&frame, reference, landmarks, pose))
         .collect();
-    let model = Model::new(vec![(&forms[reference], &frame.rows)]);
+    let model = Model::new(vec![ModelCurve {
+        form: &forms[reference],
+        parameters: &frame.rows,
+        measured: &frame.measured,
+    }]);
     let matches = (0..forms.len())
         .into_par_iter()
         .map(|pose| {
@@ -358,10 +368,15 @@ fn match_jointly(forms: &[Form], matched: &mut StarMatch) {
     for &(_, pose) in &order {
         let others = (0..forms.len()).filter(|other| *other != pose).map(|other| {
             // The reference alone has no match: the rows are its own.
-            let parameters = matches[other]
-                .as_ref()
-                .map_or(&frame.rows, |matched| &matched.parameters);
-            (&forms[other], &parameters[..])
+            let (parameters, measured) = match &matches[other] {
+                Some(matched) => (&matched.parameters, &matched.measured),
+                None => (&frame.rows, &frame.measured),
+            };
+            ModelCurve {
+                form: &forms[other],
+                parameters,
+                measured,
+            }
         });
         let model = Model::new(others.collect());
         let current = matches[pose].as_ref().map(|matched| &matched.parameters[..]);

@@ -12,14 +12,12 @@
 //! Step 4 is worth a factor of three in the median error on silhouettes warped by known maps.
 
 use super::coarse::{CoarseMatch, Form, coarse_matches_to};
-use super::curve::{COARSE_WINDOWS, FINE_WINDOWS, Samples};
-use super::elastic::{Band, MismatchTable, cheapest_path, step_cost};
-use super::frame::{CONTROL_STRIDE, Frame, Model, STIFFNESSES};
+use super::curve::Samples;
+use super::elastic::{Band, MismatchTable, cheapest_path, cheapest_start, step_cost};
+use super::frame::{CONTROL_STRIDE, Frame, Model, ModelCurve, RowSamples, STIFFNESSES};
 use super::monotone::{CyclicMap, limit_steps, make_increasing};
 use crate::math::{Point, angle};
 
-/// Rows between two samples of the coarse match: about a hundred samples.
-const COARSE_STRIDE: usize = 5;
 /// How many starts get a closer look.
 const CANDIDATES: usize = 4;
 /// Candidates whose fine cost exceeds the best by more than this factor are not guided.
@@ -58,6 +56,8 @@ pub(super) struct Pin {
 pub(super) struct PairMatch {
     /// By row: increasing, not wrapped, less than one turn.
     pub(super) parameters: Vec<f64>,
+    /// The pose there.
+    pub(super) measured: RowSamples,
     /// By row: the difference in turning and stretch from the model, as a cost per unit length.
     pub(super) mismatch: Vec<f64>,
     /// The elastic cost of the whole.
@@ -109,14 +109,14 @@ impl Task<'_> {
     /// equal counts on the model and the pose.
     fn table(&self) -> MismatchTable {
         let first_row = self.pins.first().map_or(0, |pin| pin.row);
-        let (rows, curves) = self.model.samples(first_row, ELASTIC_STRIDE, FINE_WINDOWS);
+        let (rows, curves) = self.model.samples(first_row, ELASTIC_STRIDE);
         let columns = match self.pins {
             [] => self.pose.even_parameters(rows.len()),
             _ => self.pinned_columns().into_iter().step_by(ELASTIC_STRIDE).collect(),
         };
         let forced = self.pins.iter().skip(1);
         let forced = forced.map(|pin| (pin.row - first_row) / ELASTIC_STRIDE).collect();
-        let columns = Samples::new(&self.pose.curve, columns, FINE_WINDOWS);
+        let columns = Samples::fine(&self.pose.curve, columns);
         MismatchTable::new(rows, &curves, columns, forced)
     }
 
@@ -143,8 +143,9 @@ impl Task<'_> {
 
     /// Fine matches around the best coarse ones and around the current one.
     fn candidates(&self, table: &MismatchTable, current: Option<&[f64]>) -> Vec<CoarseMatch> {
-        let (rows, curves) = self.model.samples(0, COARSE_STRIDE, COARSE_WINDOWS);
-        let mut coarse = coarse_matches_to(rows, &curves, self.pose, CANDIDATES);
+        let (rows, curves) = self.model.coarse_samples();
+        let columns = self.pose.even_samples(rows.len());
+        let mut coarse = coarse_matches_to(rows, &curves, &columns, CANDIDATES);
         coarse.extend(current.map(|parameters| CoarseMatch {
             map: CyclicMap::through(self.model.rows.clone(), parameters.to_vec()),
             cost: f32::INFINITY,
@@ -193,7 +194,7 @@ impl Task<'_> {
     /// The absolute angle of the best-fitting rotation of the match from the model's first curve, in radians.
     fn rotation(&self, candidate: &CoarseMatch) -> f64 {
         let mut sum = Point::zeros();
-        if let Some((form, parameters)) = self.model.curves.first() {
+        if let Some(ModelCurve { form, parameters, .. }) = self.model.curves.first() {
             for (t, row) in parameters.iter().zip(&self.model.rows).step_by(CONTROL_STRIDE) {
                 let (a, b) = (form.curve.at(*t), self.pose.curve.at(candidate.map.at(*row)));
                 sum += Point::new(a.dot(&b), crate::math::point::cross(a, b));
@@ -237,11 +238,12 @@ impl Task<'_> {
 
     fn measured(&self, parameters: Vec<f64>) -> PairMatch {
         let count = parameters.len();
-        let own = Samples::new(&self.pose.curve, parameters, FINE_WINDOWS);
-        let (_, curves) = self.model.samples(0, 1, FINE_WINDOWS);
+        let measured = RowSamples::new(self.pose, parameters.clone());
+        let own = &measured.fine;
+        let curves = self.model.curves.iter().map(|curve| &curve.measured.fine);
         let mut cost = 0.0;
         let mut mismatch = vec![0.0; count];
-        for curve in &curves {
+        for curve in curves.clone() {
             for (k, density) in mismatch.iter_mut().enumerate() {
                 let (ds1, ds2) = (step_after(&curve.parameters, k), step_after(&own.parameters, k));
                 let windows = curve.turning.iter().zip(&own.turning);
@@ -252,7 +254,8 @@ impl Task<'_> {
             }
         }
         PairMatch {
-            parameters: own.parameters,
+            parameters,
+            measured,
             mismatch,
             cost,
         }
@@ -262,10 +265,8 @@ impl Task<'_> {
 /// The cheapest match within a band, starting within `reach` columns of the middle of its first row.
 fn best_path(table: &MismatchTable, band: &[(usize, usize)], reach: usize) -> Option<CoarseMatch> {
     let middle = (band[0].0 + band[0].1) / 2;
-    (middle.saturating_sub(reach)..=middle + reach)
-        .filter_map(|start| cheapest_path(table, start, band))
-        .reduce(|a, b| if b.cost < a.cost { b } else { a })
-        .map(|path| CoarseMatch::from_path(table, &path))
+    let start = cheapest_start(table, middle.saturating_sub(reach)..=middle + reach, band)?;
+    cheapest_path(table, start, band).map(|path| CoarseMatch::from_path(table, &path))
 }
 
 /// From parameter `k` of a closed curve to the next, the first following the last.

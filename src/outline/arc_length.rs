@@ -5,12 +5,15 @@ use crate::math::{Point, point};
 
 /// The arc-length parameter of a ring: 0 at its first point, growing along it, 1 back at the first point.
 ///
-/// Cost: built in O(#points), each query O(log #points) but for [`ArcLength::nearest`], which is O(#points).
+/// Cost: built in O(#points), each query O(1) where points are spread evenly, but for [`ArcLength::nearest`], which is
+/// O(#points).
 #[derive(Debug, Clone)]
 pub struct ArcLength {
     points: Vec<Point>,
     /// Parameter of each point, and a final 1.
     parameters: Vec<f64>,
+    /// For as many even shares of the length as there are points, the edge at the beginning of each: where to look first.
+    guide: Vec<usize>,
     perimeter: f64,
 }
 
@@ -28,9 +31,20 @@ impl ArcLength {
             *parameter /= travelled;
         }
         parameters.push(1.0);
+        let count = ring.len();
+        let mut edge = 0;
+        let guide = (0..count)
+            .map(|share| {
+                while edge + 1 < count && parameters[edge + 1] <= share as f64 / count as f64 {
+                    edge += 1;
+                }
+                edge
+            })
+            .collect();
         Self {
             points: ring.points().to_vec(),
             parameters,
+            guide,
             perimeter: travelled,
         }
     }
@@ -51,11 +65,15 @@ impl ArcLength {
     #[must_use]
     pub fn locate(&self, t: f64) -> (usize, f64) {
         let t = t.rem_euclid(1.0);
-        let edge = self
-            .parameters
-            .partition_point(|&p| p <= t)
-            .saturating_sub(1)
-            .min(self.points.len() - 1);
+        let count = self.points.len();
+        // The last edge that does not begin after `t`; rounding may have put the guide one edge too far.
+        let mut edge = self.guide[((t * count as f64) as usize).min(count - 1)];
+        while edge > 0 && self.parameters[edge] > t {
+            edge -= 1;
+        }
+        while edge + 1 < count && self.parameters[edge + 1] <= t {
+            edge += 1;
+        }
         let (start, end) = (self.parameters[edge], self.parameters[edge + 1]);
         let along = if end > start {
             ((t - start) / (end - start)).clamp(0.0, 1.0)

@@ -4,7 +4,7 @@ use super::landmarks::{self, Landmarks};
 use super::triangulation::{self, Labels, LandmarkLabel};
 use super::{MappingReport, PipelineError, Stage};
 use crate::compatible::{
-    CompatibleMesh, RefineOptions, SimplifyError, SimplifyOptions, TriangulateReport, refine, simplify,
+    CompatibleMesh, RefineOptions, Simplification, SimplifyError, SimplifyOptions, TriangulateReport, refine,
     triangulate_features,
 };
 use crate::input::Drawing;
@@ -17,6 +17,10 @@ use crate::scene::Scene;
 /// Lines inside are simplified to the mesh's tolerance; where they then touch the outline or one another, to these shares
 /// of it.
 const FINER_LINES: [f64; 4] = [1.0, 0.25, 0.0625, 0.0];
+
+/// A variation of the simplification with fewer Steiner points is kept if the low angles of its refined mesh are at least
+/// this share of the first one's: good triangles are worth more than few points.
+const VARIED_ANGLES: f64 = 0.97;
 
 /// Maps the drawings of a scene onto one another.
 ///
@@ -61,7 +65,10 @@ pub fn map_drawings_observed(
         .filter_map(|landmark| everywhere(landmark, &matched.correspondences[0]))
         .collect();
     let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
-    let simplified = simplify(&outlines, &matched.correspondences, &pinned, &options)
+    let mut simplification = Simplification::new(&outlines, &matched.correspondences, &pinned, &options)
+        .map_err(|error| simplify_refusal(&names, error))?;
+    let mut simplified = simplification
+        .polygons()
         .map_err(|error| simplify_refusal(&names, error))?;
 
     begins(Stage::Triangulation);
@@ -70,12 +77,37 @@ pub fn map_drawings_observed(
         .iter()
         .map(|at| at.iter().zip(&measured).map(|(&t, outline)| outline.at(t)).collect())
         .collect();
-    let bare = bare_mesh(scene, drawings, &simplified.polygons, &landmarks, &anchors)?;
-    notes.extend(bare.notes);
+    let mut bare = bare_mesh(scene, drawings, &simplified.polygons, &landmarks, &anchors)?;
+    let mut first = None;
+    for _ in 0..Simplification::VARIATIONS {
+        if bare.mesh.steiner == 0 {
+            break;
+        }
+        let Some(varied) = simplification.vary(&bare.mesh) else {
+            continue;
+        };
+        if let Ok(other) = bare_mesh(scene, drawings, &varied.polygons, &landmarks, &anchors)
+            && other.mesh.is_sparer_than(&bare.mesh)
+        {
+            simplification.keep();
+            let before = std::mem::replace(&mut bare, other);
+            let before = (before, std::mem::replace(&mut simplified, varied));
+            first = first.or(Some(before));
+        }
+    }
 
     begins(Stage::Refinement);
     let options = RefineOptions::default().with_edge_length(scene.mesh.edge_length);
-    let (mesh, refinement) = refine(&bare.mesh, &options).map_err(|error| PipelineError::stage(&names, None, error))?;
+    let refined = |bare: &Bare| refine(&bare.mesh, &options).map_err(|error| PipelineError::stage(&names, None, error));
+    let (mut mesh, mut refinement) = refined(&bare)?;
+    if let Some((bare_first, simplified_first)) = first {
+        let (mesh_first, refinement_first) = refined(&bare_first)?;
+        if refinement.low_angle_deg < VARIED_ANGLES * refinement_first.low_angle_deg {
+            (mesh, refinement) = (mesh_first, refinement_first);
+            (bare, simplified) = (bare_first, simplified_first);
+        }
+    }
+    notes.extend(bare.notes);
     let placed = landmarks.placed(&anchors, &mesh);
     let poses = PoseSet::new(mesh.topology, names.iter().cloned().zip(mesh.positions).collect())
         .map_err(|error| PipelineError::stage(&names, None, error))?;

@@ -28,6 +28,7 @@ const STRAIGHT: f64 = 1e-14;
 pub(super) struct OriginalRing {
     points: Vec<Point>,
     parameters: Vec<f64>,
+    longest_edge: f64,
 }
 
 impl OriginalRing {
@@ -36,11 +37,16 @@ impl OriginalRing {
         Self {
             points: ring.points().to_vec(),
             parameters,
+            longest_edge: ring.edges().map(|(a, b)| (b - a).norm()).fold(0.0, f64::max),
         }
     }
 
     pub(super) fn points(&self) -> &[Point] {
         &self.points
+    }
+
+    pub(super) fn longest_edge(&self) -> f64 {
+        self.longest_edge
     }
 
     /// The points whose parameters lie strictly between `start` and `end`, cyclically.
@@ -123,6 +129,8 @@ pub(super) struct Collapser<'a> {
     stamps: Vec<u32>,
     ring_sizes: Vec<usize>,
     grids: Vec<EdgeGrid>,
+    /// Per tuple, what the cost of the edge that starts there is multiplied by; none where there are no tuples.
+    weights: &'a [f64],
     queue: BinaryHeap<Reverse<Queued>>,
 }
 
@@ -140,6 +148,7 @@ impl<'a> Collapser<'a> {
             stamps: vec![0; total],
             ring_sizes: rings.iter().map(|ring| ring.tuples.len()).collect(),
             grids: Vec::with_capacity(originals.len()),
+            weights: &[],
             queue: BinaryHeap::with_capacity(2 * total),
         };
         for (index, ring) in rings.into_iter().enumerate() {
@@ -163,8 +172,19 @@ impl<'a> Collapser<'a> {
         collapser
     }
 
+    /// With the costs of edges multiplied by `weights`, one for each tuple of all rings in a row.
+    pub(super) fn weighted(mut self, weights: &'a [f64]) -> Self {
+        self.weights = weights;
+        self
+    }
+
     /// Collapses the cheapest edges until none is left within the tolerance; gives the rings that remain.
-    pub(super) fn run(mut self) -> Vec<TupleRing> {
+    pub(super) fn run(self) -> Vec<TupleRing> {
+        self.survivors().0
+    }
+
+    /// As [`Self::run`], and which of the tuples, all rings in a row, remain.
+    pub(super) fn survivors(mut self) -> (Vec<TupleRing>, Vec<usize>) {
         for b in 0..self.tuples.len() {
             self.enqueue(b);
         }
@@ -195,7 +215,8 @@ impl<'a> Collapser<'a> {
                 }
             }
         }
-        self.rings()
+        let survivors = (0..self.tuples.len()).filter(|&b| self.alive[b]).collect();
+        (self.rings(), survivors)
     }
 
     fn rings(self) -> Vec<TupleRing> {
@@ -248,7 +269,8 @@ impl<'a> Collapser<'a> {
             merges.push(merge);
         }
         const SUM_SHARE: f64 = 1e-2;
-        Some((worst + SUM_SHARE * sum, merges))
+        let weight = self.weights.get(b).copied().unwrap_or(1.0);
+        Some(((worst + SUM_SHARE * sum) * weight, merges))
     }
 
     /// The best way to merge `b` and its successor in one pose.

@@ -9,11 +9,14 @@
 //! 3. Edges of tuples collapse, cheapest first, while every pose stays simple, keeps its outline inside, and deviates
 //!    by no more than the tolerance from it ([`collapse`]).
 //! 4. The vertices are pulled inwards until they touch the outline ([`tighten`]).
+//! 5. Where the triangulation then needs Steiner points, the collapses next to one are tried in another order, as often as
+//!    the caller asks ([`Simplification::vary`]).
 //!
 //! Differences from the paper: it takes the *minimum* error over the boundaries, which would sacrifice all drawings
 //! but one; the cost here is the worst squared deviation, measured against the full-resolution outline. The paper
 //! removes vertices; here each pose has its own kind of collapse for the same tuple, without which most tuples are
-//! stuck (convex in one pose, reflex in another). The first step is ours: it makes several times fewer tuples.
+//! stuck (convex in one pose, reflex in another). The first step is ours: it makes several times fewer tuples; so is the
+//! last, a local search over orders of equal standing: all of them enclose, within the same tolerance.
 //!
 //! A long thin shape may have a diagonal of a hundred of its widths; of such a shape the tolerance is taken relative to
 //! 16 mean half-widths (area over perimeter) where that is less than the diagonal.
@@ -33,6 +36,7 @@ mod tests;
 use collapse::{Collapser, OriginalRing, PoseOriginal};
 use tuples::TupleRing;
 
+use super::CompatibleMesh;
 use crate::matching::Correspondence;
 use crate::math::{Point, point};
 use crate::outline::{Outline, OutlineError, Ring, RingError};
@@ -133,6 +137,9 @@ const MERGE_DISTANCE: f64 = 1e-3;
 /// 0.32 half-widths.
 const THIN_SHAPE: f64 = 16.0;
 
+/// Variations multiply the cost of a collapse, a squared deviation, by up to this, or divide it.
+const LARGEST_WEIGHT: f64 = 4.0;
+
 /// Area over perimeter: half the width of a long strip, a quarter of the diameter of a disc.
 fn mean_half_width(outline: &Outline) -> f64 {
     outline.area() / outline.rings().iter().map(Ring::perimeter).sum::<f64>()
@@ -170,60 +177,204 @@ pub fn simplify(
     landmarks: &[Vec<f64>],
     options: &SimplifyOptions,
 ) -> Result<Simplified, SimplifyError> {
-    // Written so that NaN fails too.
-    if !(options.tolerance > 0.0 && options.tolerance.is_finite()) {
-        return Err(SimplifyError::BadTolerance(options.tolerance));
-    }
-    for (pose, outline) in outlines.iter().enumerate() {
-        if outline.rings().len() != correspondences.len() {
-            let (found, expected) = (outline.rings().len(), correspondences.len());
-            return Err(SimplifyError::RingCount { pose, found, expected });
-        }
-    }
-    let originals: Vec<PoseOriginal> = outlines
-        .iter()
-        .map(|outline| PoseOriginal {
-            rings: outline.rings().iter().map(OriginalRing::new).collect(),
-            size: outline.diagonal().min(THIN_SHAPE * mean_half_width(outline)),
-        })
-        .collect();
-    let singles = simplify_alone(outlines, &originals, landmarks, PRELIMINARY_SHARE * options.tolerance);
-    let joined: Vec<TupleRing> = correspondences
-        .iter()
-        .enumerate()
-        .map(|(ring, correspondence)| {
-            let rings: Vec<TupleRing> = singles.iter().map(|pose| pose[ring].clone()).collect();
-            TupleRing::joined(&rings, correspondence, MERGE_DISTANCE)
-        })
-        .collect();
-    let tuples = joined.iter().map(|ring| ring.tuples.len()).sum();
-    let rings = Collapser::new(joined, &originals, options.tolerance).run();
+    Simplification::new(outlines, correspondences, landmarks, options)?.polygons()
+}
 
-    let mut polygons = Vec::with_capacity(outlines.len());
-    for (pose, original) in originals.iter().enumerate() {
-        let mut points: Vec<Vec<Point>> = rings
-            .iter()
-            .map(|ring| ring.tuples.iter().map(|tuple| tuple.points[pose]).collect())
-            .collect();
-        tighten::tighten(&mut points, &original.rings);
-        let mut rings = Vec::with_capacity(points.len());
-        for (ring, points) in points.into_iter().enumerate() {
-            rings.push(Ring::new(points).map_err(|source| SimplifyError::Degenerate { pose, ring, source })?);
+/// A simplification that can be made again with small variations.
+///
+/// Which tuples remain is decided one collapse after the other, and of the many polygons within the tolerance some need
+/// fewer Steiner points than others. So where a triangulation needed some, the collapses next to one of them are tried in
+/// another order ([`Self::vary`]), and that order is kept if it serves better:
+///
+/// ```
+/// use inbetween::{compatible::{SimplifyOptions, Simplification, triangulate}, matching::Correspondence};
+/// use inbetween::{math::Point, outline::{Outline, Ring}};
+/// let wavy = |phase: f64| -> Result<Outline, Box<dyn std::error::Error>> {
+///     let rim = (0..200).map(|k| k as f64 / 200.0 * std::f64::consts::TAU);
+///     let rim = rim.map(|t| Point::new(t.cos(), t.sin()) * (1.0 + 0.4 * (5.0 * t + phase).sin()));
+///     Ok(Outline::new(Ring::new(rim)?, vec![])?)
+/// };
+/// let outlines = [wavy(0.0)?, wavy(1.5)?, wavy(3.0)?];
+/// let matching = [Correspondence::identity(3, 200)];
+/// let mut simplification = Simplification::new(&outlines, &matching, &[], &SimplifyOptions::default())?;
+/// let (mut mesh, _) = triangulate(&simplification.polygons()?.polygons, &[])?;
+/// let first = mesh.steiner;
+/// for _ in 0..Simplification::VARIATIONS {
+///     let Some(varied) = simplification.vary(&mesh) else { break };
+///     let (other, _) = triangulate(&varied.polygons, &[])?;
+///     if other.is_sparer_than(&mesh) {
+///         simplification.keep();
+///         mesh = other;
+///     }
+/// }
+/// assert!(mesh.steiner <= first);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Simplification<'a> {
+    outlines: &'a [Outline],
+    originals: Vec<PoseOriginal>,
+    /// Per ring, all tuples.
+    joined: Vec<TupleRing>,
+    tolerance: f64,
+    kept: Order,
+    varied: Order,
+    variations: usize,
+}
+
+/// In which order edges collapse, and what is left then.
+#[derive(Debug, Clone)]
+struct Order {
+    /// Per tuple of all rings, what the cost of the edge that starts there is multiplied by.
+    weights: Vec<f64>,
+    /// The tuples that remain.
+    survivors: Vec<usize>,
+}
+
+impl<'a> Simplification<'a> {
+    /// How many variations are worth their time: the first few gain most.
+    pub const VARIATIONS: usize = 12;
+
+    /// Simplifies each outline alone and joins their vertices; arguments and errors are those of [`simplify`].
+    ///
+    /// # Errors
+    /// As [`simplify`].
+    pub fn new(
+        outlines: &'a [Outline],
+        correspondences: &[Correspondence],
+        landmarks: &[Vec<f64>],
+        options: &SimplifyOptions,
+    ) -> Result<Self, SimplifyError> {
+        // Written so that NaN fails too.
+        if !(options.tolerance > 0.0 && options.tolerance.is_finite()) {
+            return Err(SimplifyError::BadTolerance(options.tolerance));
         }
-        let outer = rings.remove(0);
-        polygons.push(Outline::new(outer, rings).map_err(|source| SimplifyError::NotSimple { pose, source })?);
-    }
-    let report = SimplifyReport {
-        tuples,
-        vertices: rings.iter().map(|ring| ring.tuples.len()).sum(),
-        excess_area: polygons
+        for (pose, outline) in outlines.iter().enumerate() {
+            if outline.rings().len() != correspondences.len() {
+                let (found, expected) = (outline.rings().len(), correspondences.len());
+                return Err(SimplifyError::RingCount { pose, found, expected });
+            }
+        }
+        let originals: Vec<PoseOriginal> = outlines
             .iter()
-            .zip(outlines)
-            .map(|(p, o)| p.area() / o.area() - 1.0)
-            .collect(),
-        deviation: polygons.iter().zip(outlines).map(|(p, o)| deviation(p, o)).collect(),
-    };
-    Ok(Simplified { polygons, report })
+            .map(|outline| PoseOriginal {
+                rings: outline.rings().iter().map(OriginalRing::new).collect(),
+                size: outline.diagonal().min(THIN_SHAPE * mean_half_width(outline)),
+            })
+            .collect();
+        let singles = simplify_alone(outlines, &originals, landmarks, PRELIMINARY_SHARE * options.tolerance);
+        let joined: Vec<TupleRing> = correspondences
+            .iter()
+            .enumerate()
+            .map(|(ring, correspondence)| {
+                let rings: Vec<TupleRing> = singles.iter().map(|pose| pose[ring].clone()).collect();
+                TupleRing::joined(&rings, correspondence, MERGE_DISTANCE)
+            })
+            .collect();
+        let order = Order {
+            weights: vec![1.0; joined.iter().map(|ring| ring.tuples.len()).sum()],
+            survivors: Vec::new(),
+        };
+        Ok(Self {
+            outlines,
+            originals,
+            joined,
+            tolerance: options.tolerance,
+            kept: order.clone(),
+            varied: order,
+            variations: 0,
+        })
+    }
+
+    /// The polygons by the order that is kept: at first, the cheapest collapse first.
+    ///
+    /// # Errors
+    /// As [`simplify`].
+    pub fn polygons(&mut self) -> Result<Simplified, SimplifyError> {
+        let (simplified, survivors) = self.collapsed(&self.kept.weights)?;
+        self.kept.survivors = survivors;
+        Ok(simplified)
+    }
+
+    /// The polygons by an order that differs from the kept one around a Steiner point of `mesh`, the triangulation of the
+    /// kept polygons; another one at every call. `None` if there is no such point, or nothing changes.
+    pub fn vary(&mut self, mesh: &CompatibleMesh) -> Option<Simplified> {
+        let variation = self.variations;
+        self.variations += 1;
+        let count = mesh.topology.vertex_count();
+        // Steiner points have the last numbers, the vertices of the polygons the first.
+        let steiner = count - (1 + variation % mesh.steiner.max(1)).min(mesh.steiner);
+        let corners = mesh
+            .topology
+            .triangles()
+            .iter()
+            .filter(|t| t.contains(&steiner))
+            .flatten();
+        let survivors = &self.kept.survivors;
+        let mut weights = self.kept.weights.clone();
+        let mut random = Random(variation as u64);
+        for &vertex in corners.filter(|&&v| v < survivors.len()) {
+            // Up to the vertices beside it.
+            let (first, last) = (vertex.saturating_sub(1), (vertex + 1).min(survivors.len() - 1));
+            for weight in &mut weights[survivors[first]..=survivors[last]] {
+                *weight = LARGEST_WEIGHT.powf(2.0 * random.next() - 1.0);
+            }
+        }
+        let (simplified, survivors) = self.collapsed(&weights).ok()?;
+        let is_new = survivors != self.kept.survivors;
+        self.varied = Order { weights, survivors };
+        is_new.then_some(simplified)
+    }
+
+    /// Keeps the order of the last variation.
+    pub fn keep(&mut self) {
+        self.kept = self.varied.clone();
+    }
+
+    fn collapsed(&self, weights: &[f64]) -> Result<(Simplified, Vec<usize>), SimplifyError> {
+        let (outlines, originals) = (self.outlines, &self.originals);
+        let collapser = Collapser::new(self.joined.clone(), originals, self.tolerance);
+        let (rings, survivors) = collapser.weighted(weights).survivors();
+        let mut polygons = Vec::with_capacity(outlines.len());
+        for (pose, original) in originals.iter().enumerate() {
+            let mut points: Vec<Vec<Point>> = rings
+                .iter()
+                .map(|ring| ring.tuples.iter().map(|tuple| tuple.points[pose]).collect())
+                .collect();
+            tighten::tighten(&mut points, &original.rings);
+            let mut rings = Vec::with_capacity(points.len());
+            for (ring, points) in points.into_iter().enumerate() {
+                rings.push(Ring::new(points).map_err(|source| SimplifyError::Degenerate { pose, ring, source })?);
+            }
+            let outer = rings.remove(0);
+            polygons.push(Outline::new(outer, rings).map_err(|source| SimplifyError::NotSimple { pose, source })?);
+        }
+        let report = SimplifyReport {
+            tuples: weights.len(),
+            vertices: rings.iter().map(|ring| ring.tuples.len()).sum(),
+            excess_area: polygons
+                .iter()
+                .zip(outlines)
+                .map(|(p, o)| p.area() / o.area() - 1.0)
+                .collect(),
+            deviation: polygons.iter().zip(outlines).map(|(p, o)| deviation(p, o)).collect(),
+        };
+        Ok((Simplified { polygons, report }, survivors))
+    }
+}
+
+/// Numbers that look random: a linear congruential sequence (Knuth's MMIX constants) from a fixed seed.
+#[derive(Debug)]
+struct Random(u64);
+
+impl Random {
+    /// In `[0, 1)`.
+    fn next(&mut self) -> f64 {
+        self.0 = (self.0)
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 40) as f64 / (1 << 24) as f64
+    }
 }
 
 /// The largest distance of a point of the outline from its polygon, as a fraction of the outline's diagonal.

@@ -134,3 +134,46 @@ fn the_reported_deviation_is_that_of_the_farthest_point() {
         assert!((farthest - reported).abs() < 1e-12 && farthest > 0.0);
     }
 }
+
+#[test]
+fn a_variation_that_is_kept_is_what_comes_next() {
+    let outlines = [0.0, 1.5, 3.0].map(|phase| wavy(200, 5, 0.4, phase));
+    let matching = [Correspondence::identity(3, 200)];
+    let options = SimplifyOptions::default();
+    let mut simplification = Simplification::new(&outlines, &matching, &[], &options).expect("simplified");
+    let first = simplification.polygons().expect("simplified");
+    assert_eq!(
+        first,
+        simplify(&outlines, &matching, &[], &options).expect("simplified")
+    );
+    let (mesh, _) = crate::compatible::triangulate(&first.polygons, &[]).expect("triangulated");
+    assert!(mesh.steiner > 0);
+    let varied: Vec<Simplified> = (0..6).filter_map(|_| simplification.vary(&mesh)).collect();
+    let last = varied.last().expect("an order that makes a difference");
+    for simplified in &varied {
+        assert_ne!(simplified.polygons, first.polygons);
+        for (polygon, outline) in simplified.polygons.iter().zip(&outlines) {
+            assert!(escape(outline, polygon) < 1e-12);
+        }
+        assert!(
+            simplified
+                .report
+                .deviation
+                .iter()
+                .all(|d| *d <= options.tolerance + 1e-12)
+        );
+    }
+    // Not kept: nothing has happened.
+    assert_eq!(simplification.polygons().expect("simplified"), first);
+    let mut again = Simplification::new(&outlines, &matching, &[], &options).expect("simplified");
+    again.polygons().expect("simplified");
+    let mut kept = None;
+    for _ in 0..6 {
+        kept = again.vary(&mesh).or(kept);
+        if kept.as_ref() == Some(last) {
+            again.keep();
+            break;
+        }
+    }
+    assert_eq!(&again.polygons().expect("simplified"), last);
+}

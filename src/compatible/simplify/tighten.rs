@@ -45,11 +45,17 @@ fn pulled(rings: &[Vec<Point>], ring: usize, vertex: usize, original: &OriginalR
     if target == at {
         return None;
     }
+    // What is swept lies between these; most of the outline does not.
+    let low = before.inf(&at).inf(&after.inf(&target));
+    let high = before.sup(&at).sup(&after.sup(&target));
+    let slack = TOUCHING * (high - low).norm();
+    let near =
+        |p: &Point| p.x >= low.x - slack && p.x <= high.x + slack && p.y >= low.y - slack && p.y <= high.y + slack;
     let obstacles: Vec<Point> = original
         .points()
         .iter()
         .copied()
-        .filter(|&p| lost(before, at, after, target, p))
+        .filter(|p| near(p) && lost(before, at, after, target, *p))
         .collect();
     let allowed = |share: f64| {
         let moved = at + (target - at) * share;
@@ -143,6 +149,11 @@ impl OriginalRing {
         let points = self.points();
         let mut best = (f64::INFINITY, p);
         for (k, &a) in points.iter().enumerate() {
+            // An edge that begins farther away does not come nearer.
+            let reach = best.0 + self.longest_edge();
+            if (a - p).norm_squared() > reach * reach {
+                continue;
+            }
             let b = points[(k + 1) % points.len()];
             let (along, distance) = point::nearest_on_segment(p, a, b);
             if distance < best.0 {

@@ -1,8 +1,7 @@
 use std::f64::consts::TAU;
 
 use super::*;
-use crate::matching::curve::FINE_WINDOWS;
-use crate::matching::start::{distinct_minima, path_from_each_start};
+use crate::matching::start::cheapest_paths;
 use crate::math::rotation;
 use crate::outline::Ring;
 
@@ -19,7 +18,7 @@ fn even(count: usize) -> Vec<f64> {
 }
 
 fn compared(first: &Curve, rows: Vec<f64>, second: &Curve, columns: Vec<f64>, forced: Vec<usize>) -> MismatchTable {
-    let samples = |curve: &Curve, parameters: Vec<f64>| Samples::new(curve, parameters, FINE_WINDOWS);
+    let samples = |curve: &Curve, parameters: Vec<f64>| Samples::fine(curve, parameters);
     let first = samples(first, rows.clone());
     MismatchTable::new(rows, &[first], samples(second, columns), forced)
 }
@@ -97,9 +96,33 @@ fn dividing_the_starts_finds_the_best_of_all() {
     let table = table(48);
     let exhaustive = (0..48)
         .filter_map(|start| cheapest_path(&table, start, &table.reachable(start)))
-        .filter(|path| path.nodes[0].1 % 2 == 0)
         .map(|path| path.cost)
         .fold(f32::INFINITY, f32::min);
-    let best = distinct_minima(&path_from_each_start(&table), 2, 3);
+    let best = cheapest_paths(&table, 2, 3);
     assert!((best[0].cost - exhaustive).abs() < 1e-6);
+    assert!(best.windows(2).all(|pair| pair[0].cost <= pair[1].cost));
+}
+
+#[test]
+fn the_cheapest_start_is_that_of_the_cheapest_path() {
+    for forced in [vec![], vec![7, 16]] {
+        let uneven = (0..24).map(|k| (k as f64 / 24.0).powf(1.2)).collect();
+        for columns in [even(24), uneven] {
+            let table = compared(&wavy(0.1, 0.0), even(24), &wavy(0.15, 1.0), columns, forced.clone());
+            for (first, last, reach) in [(0_usize, 4_usize, 3_usize), (9, 31, 20), (20, 23, 6)] {
+                // A straight band about the middle start: it holds some paths from some of the starts.
+                let middle = (first + last) / 2;
+                let band: Vec<_> = (0..=24)
+                    .map(|i| ((middle + i).saturating_sub(reach), middle + i + reach))
+                    .collect();
+                let paths = (first..=last).filter_map(|start| Some((start, cheapest_path(&table, start, &band)?.cost)));
+                let best = paths.reduce(|a, b| if b.1 < a.1 { b } else { a });
+                assert_eq!(
+                    cheapest_start(&table, first..=last, &band),
+                    best.map(|(start, _)| start)
+                );
+                assert!(best.is_some() || !forced.is_empty());
+            }
+        }
+    }
 }
