@@ -20,8 +20,9 @@ use crate::math::{Point, angle};
 
 /// How many starts get a closer look.
 const CANDIDATES: usize = 4;
-/// Candidates whose fine cost exceeds the best by more than this factor are not guided.
-const CANDIDATE_MARGIN: f32 = 1.25;
+/// Candidates whose fine cost exceeds the best by more than this factor and this difference are not guided. The difference
+/// is what sampling alone makes of equal arms: 0 for one that the samples happen to meet, up to 0.2 for the others.
+const CANDIDATE_MARGIN: (f32, f32) = (1.25, 0.25);
 /// Guided costs within this factor and this difference count as a tie, which the smaller rotation decides: what even
 /// sampling leaves between equal arms of a symmetric shape. Unlike shapes cost 0.5 and more.
 const TIE_MARGIN: (f32, f32) = (1.003, 0.01);
@@ -87,7 +88,7 @@ pub(super) fn match_pose(
         vec![CoarseMatch::from_path(&table, &path)]
     };
     let least = candidates.iter().map(|c| c.cost).fold(f32::INFINITY, f32::min);
-    candidates.retain(|c| c.cost <= CANDIDATE_MARGIN * least);
+    candidates.retain(|c| c.cost <= CANDIDATE_MARGIN.0 * least + CANDIDATE_MARGIN.1);
     let guided: Vec<CoarseMatch> = candidates
         .into_iter()
         .map(|candidate| task.guided(&table, candidate))
