@@ -11,6 +11,7 @@
 //! A [`Character`] is immutable and can be asked from many threads at once.
 
 mod character;
+mod deformed;
 mod drawings;
 mod error;
 mod inside;
@@ -22,6 +23,7 @@ mod triangulation;
 mod weighting;
 
 pub use character::Character;
+pub use deformed::DeformedPose;
 pub use drawings::read_drawings;
 pub use error::PipelineError;
 pub use mapping::{map_drawings, map_drawings_observed};

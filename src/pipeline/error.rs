@@ -143,6 +143,18 @@ pub enum PipelineError {
         /// The line of the scene file.
         line: usize,
     },
+    /// A copy cannot be deformed.
+    #[error("pose '{pose}' (line {line}), a deformed copy of '{of}': {message}")]
+    Deformation {
+        /// The copy's name.
+        pose: String,
+        /// The name of the pose that is deformed.
+        of: String,
+        /// The line of the scene file with the handles.
+        line: usize,
+        /// What is wrong and what to do.
+        message: String,
+    },
     /// A stage refused; the message says why.
     #[error("{}{message}", pose.as_ref().map(|p| format!("pose '{p}': ")).unwrap_or_default())]
     Stage {

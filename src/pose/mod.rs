@@ -1,5 +1,6 @@
 //! One topology with N embeddings, and the mapping that the pipeline makes of N drawings.
 
+mod carried;
 mod handles;
 mod json;
 mod landmark;
@@ -7,6 +8,7 @@ mod mapping;
 mod pose_set;
 mod quality;
 
+pub use carried::{CarriedOutline, CarryError};
 pub use handles::{DragReport, HandleDeformation, HandleError, HandleScratch, Repair};
 pub use json::{MappingFileError, Polygons};
 pub use landmark::{LandmarkKind, PlacedLandmark};
