@@ -132,7 +132,7 @@ impl Character {
     }
 }
 
-fn blend_options(scene: &Scene, mapping: &Mapping) -> BlendOptions {
+pub(super) fn blend_options(scene: &Scene, mapping: &Mapping) -> BlendOptions {
     let vertex = |landmark| nearest_vertex(scene, mapping, landmark);
     let settings = &scene.blend;
     BlendOptions {

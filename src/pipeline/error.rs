@@ -135,6 +135,14 @@ pub enum PipelineError {
         /// The pose's name.
         pose: String,
     },
+    /// A landmark is asked for that does not exist, or is a line.
+    #[error("there is no landmark point '{name}'; the scene has {known}")]
+    UnknownLandmark {
+        /// The name asked for.
+        name: String,
+        /// Those there are.
+        known: String,
+    },
     /// A landmark without a place.
     #[error("landmark '{landmark}' (line {line}) lies on no pose; give it a place on at least one")]
     LandmarkNowhere {

@@ -206,7 +206,7 @@ fn copies_that_make_no_sense_are_refused() {
     let good = copy(&(of("a") + HANDLES));
     let (line, message) = refused(&format!("reference = \"c\"\n{good}"));
     assert!(
-        line == Some(2) && message.contains("'c', a deformed copy"),
+        line == Some(1) && message.contains("'c', a deformed copy"),
         "{line:?} {message}"
     );
     let (line, message) = refused(&format!("{good}[[landmark]]\nname = \"nose\"\nat = {{ c = [1, 2] }}\n"));
