@@ -18,7 +18,7 @@ use super::values::Numbers;
 /// Give landmarks of the scene, on the outline or inside, and where each should be, in the units of the drawings as
 /// `inbetween blend` prints them. Prints {"at": [...], "weights": [...], "error": ..., "handles": {"NAME": [x, y]}}: the place, the
 /// weights there, how far the landmarks are from their targets (root of the mean square) and where they come to lie. The
-/// place is looked for in the box of the poses, widened by half its diagonal on every side.
+/// place is looked for in the box of the poses, widened by a quarter of its diagonal on every side.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

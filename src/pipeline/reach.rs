@@ -32,6 +32,8 @@ const SHORTEST_STEP: f64 = 1e-10;
 const EQUAL: f64 = 1e-5;
 /// The damping at first, relative to the curvature of each coordinate.
 const DAMPING: f64 = 1e-3;
+/// How many landmarks a refusal names.
+const NAMED: usize = 12;
 /// Damping beyond which no step is found any more.
 const MOST_DAMPING: f64 = 1e12;
 
@@ -44,7 +46,8 @@ pub struct ReachOptions {
     pub starts: usize,
     /// The most steps from each. Default: 60.
     pub steps: usize,
-    /// How far beyond the box of the poses the search may go, in its diagonals. Default: 0.5.
+    /// How far beyond the box of the poses the search may go, in its diagonals: far outside, blends are wild. Default:
+    /// 0.25.
     pub beyond: f64,
 }
 
@@ -54,7 +57,7 @@ impl Default for ReachOptions {
             places: 96,
             starts: 8,
             steps: 60,
-            beyond: 0.5,
+            beyond: 0.25,
         }
     }
 }
@@ -221,12 +224,18 @@ pub fn reach_landmarks(
                 ShapePoint::new(&mapping.poses, &places)
             })
             .ok_or_else(|| {
-                let known: Vec<String> = (report.landmarks.iter().filter(is_point))
+                let mut known: Vec<String> = (report.landmarks.iter().filter(is_point))
                     .map(|landmark| format!("'{}'", landmark.name))
                     .collect();
+                let more = known.len().saturating_sub(NAMED);
+                known.truncate(NAMED);
+                let mut known = known.join(", ");
+                if more > 0 {
+                    known.push_str(&format!(" and {more} more"));
+                }
                 PipelineError::UnknownLandmark {
                     name: name.clone(),
-                    known: known.join(", "),
+                    known,
                 }
             })
     };
