@@ -111,7 +111,7 @@ fn handles_of_a_reflected_drawing_are_reflected_with_it() {
     for (text, x) in [(text, 5.0), (mirrored, -5.0)] {
         // Landmarks say which way round a drawing is: here they would contradict one another.
         let start = text.find("[[landmark]]").expect("landmarks");
-        workshop.file("scene.toml", text[..start].as_bytes());
+        workshop.file("scene.toml", &text.as_bytes()[..start]);
         let scene = scene_of(&workshop);
         let drawings = read_drawings(&scene).expect("drawings");
         let (mapping, _) = map_drawings(&scene, &drawings).expect("a mapping");

@@ -428,7 +428,7 @@ fn radical_inverse(mut k: usize, base: usize) -> f64 {
 
 /// Prime `index`, from 2.
 fn prime(index: usize) -> usize {
-    let is_prime = |n: &usize| (2..*n).take_while(|d| d * d <= *n).all(|d| n % d != 0);
+    let is_prime = |n: &usize| (2..*n).take_while(|d| d * d <= *n).all(|d| !n.is_multiple_of(d));
     (2..).filter(is_prime).nth(index).unwrap_or(2)
 }
 

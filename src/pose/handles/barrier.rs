@@ -88,7 +88,8 @@ fn minimise(
     let violation = |positions: &[Point]| missing(positions).iter().map(|m| m.norm()).sum::<f64>();
     let mut price = 0.0_f64;
     for step in 0..MOST_STEPS {
-        let Some((direction, multipliers)) = newton_step(shape, constraint, &missing(positions), positions)? else {
+        let Some(Step { direction, multipliers }) = newton_step(shape, constraint, &missing(positions), positions)?
+        else {
             return Ok(step);
         };
         let motion = direction.iter().map(|d| d.norm()).fold(0.0, f64::max);
@@ -136,13 +137,21 @@ fn energy(shape: &RestShape, positions: &[Point]) -> f64 {
         .sum()
 }
 
-/// The Newton direction under the equations, and their multipliers; `None` if the system cannot be solved.
+/// A Newton step under the equations.
+struct Step {
+    /// Per vertex.
+    direction: Vec<Point>,
+    /// Per handle.
+    multipliers: Vec<Point>,
+}
+
+/// The Newton step; `None` if the system cannot be solved.
 fn newton_step(
     shape: &RestShape,
     constraint: &Constraint,
     missing: &[Point],
     positions: &[Point],
-) -> Result<Option<(Vec<Point>, Vec<Point>)>, HandleError> {
+) -> Result<Option<Step>, HandleError> {
     let size = 2 * positions.len();
     let mut hessian = Triplets::new(size, size);
     let mut downhill = vec![[0.0; 1]; size];
@@ -219,7 +228,7 @@ fn newton_step(
     let multipliers = (0..count / 2)
         .map(|k| Point::new(multipliers.at(2 * k, 0), multipliers.at(2 * k + 1, 0)) + missing[k] * PULL)
         .collect();
-    Ok(Some((direction, multipliers)))
+    Ok(Some(Step { direction, multipliers }))
 }
 
 /// How the energy of a triangle changes with its map.

@@ -180,7 +180,9 @@ fn inverse_of(matrix: &DenseMatrix) -> Result<Vec<f64>, HandleError> {
     };
     let error = matrix.times(&inverse)?.plus(-1.0, &identity)?;
     let places = || (0..size).flat_map(|row| (0..size).map(move |column| (row, column)));
-    if places().any(|(row, column)| !(error.at(row, column).abs() < DEPENDENT)) {
+    // NaN is no proof of independence either.
+    let is_exact = places().all(|(row, column)| error.at(row, column).abs() < DEPENDENT);
+    if !is_exact {
         return Err(HandleError::Dependent { handle });
     }
     Ok(places().map(|(row, column)| inverse.at(row, column)).collect())

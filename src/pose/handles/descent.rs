@@ -89,7 +89,8 @@ pub(super) fn minimise(
         outcome.iterations += 1;
         let mut reached = turn(shape, positions, &mut scratch.rotations);
         // The first positions need not meet the handles, and then their energy says nothing.
-        if is_combined && !(reached <= energy) {
+        let falls = reached <= energy;
+        if is_combined && !falls {
             positions.clone_from_slice(&scratch.last_fitted);
             reached = turn(shape, positions, &mut scratch.rotations);
             (kept, next) = (0, 0);
@@ -235,8 +236,9 @@ fn solve_small(mut gram: [[f64; WINDOW]; WINDOW], mut right: [f64; WINDOW], coun
         }
         for row in pivot + 1..count {
             let factor = gram[row][pivot] / diagonal;
-            for column in pivot..count {
-                gram[row][column] -= factor * gram[pivot][column];
+            let above = gram[pivot];
+            for (entry, above) in gram[row].iter_mut().zip(above).take(count).skip(pivot) {
+                *entry -= factor * above;
             }
             right[row] -= factor * right[pivot];
         }

@@ -66,7 +66,8 @@ impl Reader<'_> {
                     )),
                 ));
             };
-            match [*x, *y].iter().find(|v| !(v.abs() <= Ring::LARGEST_COORDINATE)) {
+            let is_bad = |v: &&f64| !v.is_finite() || v.abs() > Ring::LARGEST_COORDINATE;
+            match [*x, *y].iter().find(is_bad) {
                 None => Ok(Point::new(*x, *y)),
                 Some(bad) => Err(self.fail(
                     start,
