@@ -142,6 +142,26 @@ pub enum HandleError {
     Solve(#[from] SolveError),
 }
 
+/// When a drag ends. Handles are met exactly whenever that is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DragOptions {
+    /// A step that moves no vertex further than this, as a fraction of the pose's diagonal, is the last. Default: 1e-7, a
+    /// ten-thousandth of a pixel of a drawing of a thousand.
+    pub still: f64,
+    /// The most steps from each beginning. Default: 600. An interactive dragger takes as many as fit into a frame, 20 for
+    /// instance: the next drag goes on from there.
+    pub most_iterations: usize,
+}
+
+impl Default for DragOptions {
+    fn default() -> Self {
+        Self {
+            still: 1e-7,
+            most_iterations: 600,
+        }
+    }
+}
+
 /// Whether triangles had to be turned over again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Repair {
@@ -204,6 +224,7 @@ pub struct HandleDeformation {
     shape: Arc<RestShape>,
     constraint: Constraint,
     conformal: Conformal,
+    options: DragOptions,
 }
 
 impl HandleDeformation {
@@ -239,7 +260,15 @@ impl HandleDeformation {
             shape,
             constraint,
             conformal,
+            options: DragOptions::default(),
         })
+    }
+
+    /// The same handles, dragged with other options.
+    #[must_use]
+    pub fn with_options(mut self, options: DragOptions) -> Self {
+        self.options = options;
+        self
     }
 
     /// How many handles.
@@ -278,7 +307,7 @@ impl HandleDeformation {
                 shape,
                 &self.constraint,
                 targets,
-                Beginning::Onwards,
+                (Beginning::Onwards, &self.options),
                 positions,
                 &mut scratch.descent,
             )?
@@ -293,7 +322,7 @@ impl HandleDeformation {
                     shape,
                     &self.constraint,
                     targets,
-                    Beginning::Anew,
+                    (Beginning::Anew, &self.options),
                     &mut reached,
                     &mut scratch.descent,
                 )?;

@@ -9,7 +9,7 @@ mod pose_set;
 mod quality;
 
 pub use carried::{CarriedOutline, CarryError};
-pub use handles::{DragReport, HandleDeformation, HandleError, HandleScratch, Repair};
+pub use handles::{DragOptions, DragReport, HandleDeformation, HandleError, HandleScratch, Repair};
 pub use json::{MappingFileError, Polygons};
 pub use landmark::{LandmarkKind, PlacedLandmark};
 pub use mapping::{Mapping, MappingError, Matching};

@@ -6,18 +6,13 @@
 //! 3. The steps are combined so that their linear part cancels (Anderson acceleration; Peng et al. 2018, "Anderson
 //!    acceleration for geometry optimization and physics simulation"); where that raises the energy the plain step is taken.
 //!
-//! It ends when no vertex moves more than [`STILL`] in a step, or after [`MOST_ITERATIONS`].
+//! It ends when no vertex moves any more, or after a number of steps ([`DragOptions`]).
 
-use super::HandleError;
 use super::constraint::Constraint;
 use super::rest::RestShape;
+use super::{DragOptions, HandleError};
 use crate::math::Point;
 
-/// A step that moves no vertex further than this, as a fraction of the pose's diagonal, is the last: a ten-thousandth of a pixel
-/// of a drawing of a thousand.
-const STILL: f64 = 1e-7;
-/// The most steps.
-const MOST_ITERATIONS: usize = 600;
 /// Steps that are combined.
 const WINDOW: usize = 5;
 /// What is added to the diagonal of the combination's normal equations, relative to its entries.
@@ -54,6 +49,8 @@ pub(super) enum Beginning {
 pub(super) struct Scratch {
     /// Cosine and sine of each triangle.
     rotations: Vec<[f64; 2]>,
+    /// Twice the similar part of each triangle's map, times its area.
+    pulls: Vec<[f64; 2]>,
     fitted: Vec<[f64; 2]>,
     solve: Vec<[f64; 2]>,
     small: Vec<Point>,
@@ -70,7 +67,7 @@ pub(super) fn minimise(
     shape: &RestShape,
     constraint: &Constraint,
     targets: &[Point],
-    beginning: Beginning,
+    (beginning, options): (Beginning, &DragOptions),
     positions: &mut [Point],
     scratch: &mut Scratch,
 ) -> Result<Outcome, HandleError> {
@@ -85,14 +82,15 @@ pub(super) fn minimise(
         energy: 0.0,
         smallest_share: 0.0,
     };
-    while outcome.iterations < MOST_ITERATIONS {
+    let most = options.most_iterations.max(1);
+    while outcome.iterations < most {
         outcome.iterations += 1;
-        let mut reached = turn(shape, positions, &mut scratch.rotations);
+        let mut reached = turn(shape, positions, &mut scratch.rotations, &mut scratch.pulls);
         // The first positions need not meet the handles, and then their energy says nothing.
         let falls = reached <= energy;
         if is_combined && !falls {
             positions.clone_from_slice(&scratch.last_fitted);
-            reached = turn(shape, positions, &mut scratch.rotations);
+            reached = turn(shape, positions, &mut scratch.rotations, &mut scratch.pulls);
             (kept, next) = (0, 0);
         }
         energy = reached;
@@ -119,10 +117,10 @@ pub(super) fn minimise(
             .last_fitted
             .extend(scratch.fitted.iter().map(|p| Point::from(*p)));
         positions.clone_from_slice(&scratch.last_fitted);
-        if outcome.last_motion <= STILL {
+        if outcome.last_motion <= options.still {
             break;
         }
-        is_combined = kept > 0 && outcome.iterations < MOST_ITERATIONS;
+        is_combined = kept > 0 && outcome.iterations < most;
         if is_combined {
             combine(
                 &scratch.step,
@@ -152,11 +150,13 @@ fn begin(shape: &RestShape, positions: &[Point], scratch: &mut Scratch) {
 }
 
 /// The local step; returns the energy of `positions` with the new rotations.
-fn turn(shape: &RestShape, positions: &[Point], rotations: &mut [[f64; 2]]) -> f64 {
+fn turn(shape: &RestShape, positions: &[Point], rotations: &mut [[f64; 2]], pulls: &mut Vec<[f64; 2]>) -> f64 {
     let mut energy = 0.0;
+    pulls.clear();
     for (t, (area, ties)) in shape.areas().iter().zip(shape.ties()).enumerate() {
         let map = shape.triangle_map(t, positions);
         let mut pull = [area * (map.m11 + map.m22), area * (map.m21 - map.m12)];
+        pulls.push(pull);
         let mut tied = 0.0;
         for (across, tie) in shape.neighbours()[t].iter().zip(ties) {
             if let Some(other) = across {
@@ -169,10 +169,9 @@ fn turn(shape: &RestShape, positions: &[Point], rotations: &mut [[f64; 2]]) -> f
         // |J - R|^2 and half of |R - R'|^2 a tie, without the part that is the same for all rotations.
         energy += area * (map.norm_squared() + 2.0) + 2.0 * tied;
     }
-    for (t, (area, ties)) in shape.areas().iter().zip(shape.ties()).enumerate() {
-        let map = shape.triangle_map(t, positions);
+    for (t, (pull, ties)) in pulls.iter().zip(shape.ties()).enumerate() {
         let [cos, sin] = rotations[t];
-        energy -= 2.0 * area * (cos * (map.m11 + map.m22) + sin * (map.m21 - map.m12));
+        energy -= 2.0 * (cos * pull[0] + sin * pull[1]);
         for (across, tie) in shape.neighbours()[t].iter().zip(ties) {
             if let Some(other) = across {
                 energy -= 2.0 * tie * (cos * rotations[*other][0] + sin * rotations[*other][1]);

@@ -132,6 +132,25 @@ fn a_drag_goes_on_from_the_last_and_the_first_forgets_nothing() {
         report.energy,
         slow.energy
     );
+    // In a frame's time it does not arrive, but the next frames go on.
+    let hasty = HandleDeformation::new(&topology, &rest, &handles).expect("handles");
+    let hasty = hasty.with_options(DragOptions {
+        most_iterations: 8,
+        ..DragOptions::default()
+    });
+    let (mut hasty_scratch, mut arrived) = (hasty.scratch(), Vec::new());
+    for _ in 0..40 {
+        let report = hasty
+            .drag(&to, &mut hasty_scratch, &mut arrived)
+            .expect("a deformation");
+        assert!(report.iterations <= 16 && (arrived[17 + 8] - to[1]).norm() < 1e-9);
+    }
+    let gap = arrived
+        .iter()
+        .zip(&fresh)
+        .map(|(p, q)| (p - q).norm())
+        .fold(0.0, f64::max);
+    assert!(gap < 0.05, "{gap}");
     // The same again is there already, and other handles share the factor.
     let again = deformation
         .drag(&to, &mut scratch, &mut positions)
