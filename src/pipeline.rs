@@ -11,20 +11,24 @@
 //! A [`Character`] is immutable and can be asked from many threads at once.
 
 mod character;
+mod deformed;
 mod drawings;
 mod error;
 mod inside;
 mod landmark_path;
 mod landmarks;
 mod mapping;
+mod reach;
 mod report;
 mod triangulation;
 mod weighting;
 
 pub use character::Character;
+pub use deformed::DeformedPose;
 pub use drawings::read_drawings;
 pub use error::PipelineError;
 pub use mapping::{map_drawings, map_drawings_observed};
+pub use reach::{Reach, ReachOptions, ShapePoint, reach, reach_landmarks};
 pub use report::{MappingReport, Stage};
 pub use triangulation::{LandmarkLabel, Refinement, triangulate_polygons};
 pub use weighting::{checked_weights, weight_provider};

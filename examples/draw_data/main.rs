@@ -1,12 +1,14 @@
-//! Draws the three scenes in `data/`: `cargo run --example draw_data -- data`.
+//! Draws the four scenes in `data/`: `cargo run --example draw_data -- data`.
 //!
 //! The pictures there were made by this program and are committed beside it. Drawing them again gives the same bytes.
 //!
 //! - [`walker`]: five bitmaps of one figure, drawn from a skeleton;
 //! - [`snake`]: five vector drawings of one body, bent along five centre lines;
-//! - [`face`]: four vector drawings of one head, two expressions by two turns.
+//! - [`face`]: four vector drawings of one head, two expressions by two turns;
+//! - [`clown`]: two bitmaps of one figure, and four poses that are these two deformed.
 
 mod canvas;
+mod clown;
 mod curves;
 mod face;
 mod scene;
@@ -22,5 +24,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     walker::draw(&folder.join("walker"))?;
     snake::draw(&folder.join("snake"))?;
     face::draw(&folder.join("face"))?;
+    clown::draw(&folder.join("clown"))?;
     Ok(())
 }

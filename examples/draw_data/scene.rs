@@ -19,6 +19,18 @@ pub(crate) struct Pose {
     pub(crate) landmarks: Vec<(String, Point)>,
 }
 
+/// A pose that is another one deformed.
+#[derive(Debug)]
+pub(crate) struct Copy {
+    pub(crate) name: &'static str,
+    /// The pose that is deformed.
+    pub(crate) of: &'static str,
+    /// Place in pose space.
+    pub(crate) at: [f64; 2],
+    /// From where to where its handles are moved.
+    pub(crate) handles: Vec<(Point, Point)>,
+}
+
 /// What a scene file says.
 #[derive(Debug)]
 pub(crate) struct Scene {
@@ -34,6 +46,11 @@ pub(crate) struct Scene {
 
 /// Writes `scene.toml` into `folder`.
 pub(crate) fn save(folder: &Path, scene: &Scene) -> Result<(), Box<dyn Error>> {
+    save_with_copies(folder, scene, &[])
+}
+
+/// Writes `scene.toml` into `folder`, with poses that are deformed copies.
+pub(crate) fn save_with_copies(folder: &Path, scene: &Scene, copies: &[Copy]) -> Result<(), Box<dyn Error>> {
     let mut text = String::from("version = 1\n");
     let reference = scene.poses.first().ok_or("a scene needs a pose")?;
     writeln!(text, "reference = \"{}\"", reference.name)?;
@@ -50,6 +67,18 @@ pub(crate) fn save(folder: &Path, scene: &Scene) -> Result<(), Box<dyn Error>> {
             writeln!(text, "element = \"{element}\"")?;
         }
         writeln!(text, "at = [{:.1}, {:.1}]", pose.at[0], pose.at[1])?;
+    }
+    for copy in copies {
+        write!(
+            text,
+            "\n[[pose]]\nname = \"{}\"\ndeform_of = \"{}\"\nat = [{:.1}, {:.1}]\nhandles = [\n",
+            copy.name, copy.of, copy.at[0], copy.at[1]
+        )?;
+        for (from, to) in &copy.handles {
+            let [a, b, c, d] = [from.x, from.y, to.x, to.y].map(decimal);
+            writeln!(text, "  {{ from = [{a}, {b}], to = [{c}, {d}] }},")?;
+        }
+        writeln!(text, "]")?;
     }
     for (k, (name, _)) in reference.landmarks.iter().enumerate() {
         let places: Vec<String> = scene

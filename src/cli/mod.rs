@@ -11,6 +11,7 @@ mod map;
 mod new;
 mod output;
 mod progress;
+mod reach;
 mod render;
 mod show;
 mod stage_table;
@@ -50,6 +51,7 @@ enum Verb {
     Triangulate(triangulate::Arguments),
     Blend(blend::Arguments),
     Weights(weights::Arguments),
+    Reach(reach::Arguments),
     Check(check::Arguments),
     Show(show::Arguments),
 }
@@ -103,6 +105,7 @@ pub(crate) fn run() -> ExitCode {
         Verb::Triangulate(verb) => triangulate::run(&verb),
         Verb::Blend(verb) => blend::run(&verb, verbosity),
         Verb::Weights(verb) => weights::run(&verb),
+        Verb::Reach(verb) => reach::run(&verb),
         Verb::Check(verb) => check::run(&verb),
         Verb::Show(verb) => show::run(&verb, verbosity),
     };

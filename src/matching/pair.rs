@@ -20,11 +20,13 @@ use crate::math::{Point, angle};
 
 /// How many starts get a closer look.
 const CANDIDATES: usize = 4;
-/// Candidates whose fine cost exceeds the best by more than this factor and this difference are not guided. The difference
-/// is what sampling alone makes of equal arms: 0 for one that the samples happen to meet, up to 0.2 for the others.
-const CANDIDATE_MARGIN: (f32, f32) = (1.25, 0.25);
+/// Below this cost candidates differ by sampling alone: of the equal arms of a symmetric shape, one that the samples happen
+/// to meet costs 0, and the others up to 0.2. Unlike shapes cost 0.5 and more.
+const SAMPLING_COST: f32 = 0.25;
+/// Candidates whose fine cost exceeds the best by more than this factor are not guided.
+const CANDIDATE_MARGIN: f32 = 1.25;
 /// Guided costs within this factor and this difference count as a tie, which the smaller rotation decides: what even
-/// sampling leaves between equal arms of a symmetric shape. Unlike shapes cost 0.5 and more.
+/// sampling leaves between nearly equal arms.
 const TIE_MARGIN: (f32, f32) = (1.003, 0.01);
 /// Rows between two samples of the elastic match.
 const ELASTIC_STRIDE: usize = 2;
@@ -88,7 +90,7 @@ pub(super) fn match_pose(
         vec![CoarseMatch::from_path(&table, &path)]
     };
     let least = candidates.iter().map(|c| c.cost).fold(f32::INFINITY, f32::min);
-    candidates.retain(|c| c.cost <= CANDIDATE_MARGIN.0 * least + CANDIDATE_MARGIN.1);
+    candidates.retain(|c| c.cost <= (CANDIDATE_MARGIN * least).max(SAMPLING_COST));
     let guided: Vec<CoarseMatch> = candidates
         .into_iter()
         .map(|candidate| task.guided(&table, candidate))
@@ -186,9 +188,12 @@ impl Task<'_> {
     /// Only a shape with rotational symmetry has such ties, so that turning a drawing changes nothing for any other.
     fn choose(&self, candidates: Vec<CoarseMatch>) -> Option<CoarseMatch> {
         let least = candidates.iter().map(|c| c.cost).fold(f32::INFINITY, f32::min);
+        for c in &candidates {
+            eprintln!("DBG {} {}", c.cost, self.rotation(c));
+        }
         candidates
             .into_iter()
-            .filter(|c| c.cost <= TIE_MARGIN.0 * least + TIE_MARGIN.1)
+            .filter(|c| c.cost <= (TIE_MARGIN.0 * least + TIE_MARGIN.1).max(SAMPLING_COST))
             .min_by(|a, b| self.rotation(a).total_cmp(&self.rotation(b)))
     }
 

@@ -6,7 +6,7 @@ use crate::blend::{self, BlendOptions, BlendReport, RigidBlend};
 use crate::input::Drawing;
 use crate::math::Point;
 use crate::pose::Mapping;
-use crate::render::{Camera, Frame, Painter, Silhouette, Texture};
+use crate::render::{Camera, Frame, Painter, PoseTexture, Silhouette, Texture};
 use crate::scene::{Anchor, Animation, Background, Scene};
 use crate::texture::texture_weights;
 use crate::weights::WeightProvider;
@@ -50,9 +50,9 @@ impl Character {
         let silhouette = Silhouette::new(&mapping);
         let camera = camera(scene, size, &mapping, &blend, weights.as_ref(), &silhouette)?;
         sharpen(scene, &mut drawings, camera.scale())?;
-        let textures = textures(&drawings, camera.scale());
+        let (textures, texture_of) = textures(scene, &drawings, camera.scale());
         Ok(Self {
-            painter: Painter::new(&mapping, textures, silhouette, camera),
+            painter: Painter::new(&mapping, textures, texture_of, silhouette, camera),
             mapping,
             notes,
             blend,
@@ -132,7 +132,7 @@ impl Character {
     }
 }
 
-fn blend_options(scene: &Scene, mapping: &Mapping) -> BlendOptions {
+pub(super) fn blend_options(scene: &Scene, mapping: &Mapping) -> BlendOptions {
     let vertex = |landmark| nearest_vertex(scene, mapping, landmark);
     let settings = &scene.blend;
     BlendOptions {
@@ -206,9 +206,20 @@ fn camera(
     Ok(Camera::fitting(&shown, size))
 }
 
-fn textures(drawings: &[Drawing], frame_scale: f64) -> Vec<Texture> {
-    drawings
+/// The drawings' textures, and which of them each pose shows.
+fn textures(scene: &Scene, drawings: &[Drawing], frame_scale: f64) -> (Vec<PoseTexture>, Vec<usize>) {
+    let drawn = scene.drawn_poses();
+    let textures = drawings
         .iter()
-        .map(|drawing| Texture::new(&drawing.picture, &drawing.outline, frame_scale))
-        .collect()
+        .zip(&drawn)
+        .map(|(drawing, &drawn_on)| PoseTexture {
+            texture: Texture::new(&drawing.picture, &drawing.outline, frame_scale),
+            drawn_on,
+        })
+        .collect();
+    let shown = |pose: usize| {
+        let root = scene.drawing_of(pose).map(|(root, _)| root);
+        drawn.iter().position(|&pose| Some(pose) == root).unwrap_or(0)
+    };
+    (textures, (0..scene.poses.len()).map(shown).collect())
 }

@@ -11,12 +11,14 @@ use crate::math::point::bounding_box;
 use crate::outline::{Outline, OutlineError, Ring};
 use crate::scene::{Facing, Holes, Scene};
 
-/// Reads the drawings of all poses of a scene, in parallel; mirrored poses are reflected, picture and outline.
+/// Reads the drawings of a scene, in parallel: one a pose that has one of its own (deformed copies have none), in the scene's
+/// order. Mirrored poses are reflected, picture and outline.
 ///
 /// # Errors
 /// [`PipelineError`] naming the first pose, in the scene's order, whose drawing cannot be used.
 pub fn read_drawings(scene: &Scene) -> Result<Vec<Drawing>, PipelineError> {
-    let read: Vec<Result<Drawing, PipelineError>> = (0..scene.poses.len())
+    let read: Vec<Result<Drawing, PipelineError>> = scene
+        .drawn_poses()
         .into_par_iter()
         .map(|pose| read_drawing(scene, pose, None))
         .collect();
@@ -27,9 +29,10 @@ pub fn read_drawings(scene: &Scene) -> Result<Vec<Drawing>, PipelineError> {
 pub(super) fn sharpen(scene: &Scene, drawings: &mut [Drawing], frame_scale: f64) -> Result<(), PipelineError> {
     let sharper: Vec<Result<(), PipelineError>> = drawings
         .par_iter_mut()
-        .enumerate()
-        .map(|(pose, drawing)| {
-            if is_svg(&scene.poses[pose].source) && drawing.picture.pixels_per_unit < frame_scale {
+        .zip(scene.drawn_poses())
+        .map(|(drawing, pose)| {
+            let is_vector = scene.drawing_of(pose).is_some_and(|(_, source)| is_svg(&source.file));
+            if is_vector && drawing.picture.pixels_per_unit < frame_scale {
                 drawing.picture = read_drawing(scene, pose, Some(frame_scale))?.picture;
             }
             Ok(())
@@ -41,7 +44,10 @@ pub(super) fn sharpen(scene: &Scene, drawings: &mut [Drawing], frame_scale: f64)
 /// The drawing of pose `pose`; a vector drawing has `pixels_per_unit` in its picture.
 fn read_drawing(scene: &Scene, pose: usize, pixels_per_unit: Option<f64>) -> Result<Drawing, PipelineError> {
     let path = scene.source_path(pose)?;
-    let said = &scene.poses[pose];
+    let name = &scene.poses[pose].name;
+    let Some((_, said)) = scene.drawing_of(pose) else {
+        return Err(PipelineError::stage(&scene.names(), Some(pose), "it has no drawing"));
+    };
     let holes = match scene.input.holes {
         Holes::Keep => HoleRule::Keep,
         Holes::Fill => HoleRule::Fill,
@@ -69,8 +75,8 @@ fn read_drawing(scene: &Scene, pose: usize, pixels_per_unit: Option<f64>) -> Res
         Facing::Mirrored => mirrored(drawing),
     })
     .map_err(|source| PipelineError::Drawing {
-        pose: said.name.clone(),
-        file: said.source.clone(),
+        pose: name.clone(),
+        file: said.file.clone(),
         source: Box::new(source),
     })
 }

@@ -135,6 +135,14 @@ pub enum PipelineError {
         /// The pose's name.
         pose: String,
     },
+    /// A landmark is asked for that does not exist, or is a line.
+    #[error("there is no landmark point '{name}'; the scene has {known}")]
+    UnknownLandmark {
+        /// The name asked for.
+        name: String,
+        /// Those there are.
+        known: String,
+    },
     /// A landmark without a place.
     #[error("landmark '{landmark}' (line {line}) lies on no pose; give it a place on at least one")]
     LandmarkNowhere {
@@ -142,6 +150,18 @@ pub enum PipelineError {
         landmark: String,
         /// The line of the scene file.
         line: usize,
+    },
+    /// A copy cannot be deformed.
+    #[error("pose '{pose}' (line {line}), a deformed copy of '{of}': {message}")]
+    Deformation {
+        /// The copy's name.
+        pose: String,
+        /// The name of the pose that is deformed.
+        of: String,
+        /// The line of the scene file with the handles.
+        line: usize,
+        /// What is wrong and what to do.
+        message: String,
     },
     /// A stage refused; the message says why.
     #[error("{}{message}", pose.as_ref().map(|p| format!("pose '{p}': ")).unwrap_or_default())]

@@ -276,11 +276,14 @@ fn nearest_vertex(polygons: &[Outline], places: &[Point]) -> usize {
         .unwrap_or(0)
 }
 
-/// A place of the source in the drawing as it is used. Its own inverse.
-fn as_used(scene: &Scene, drawings: &[Drawing], pose: usize, place: Point) -> Point {
-    match scene.poses[pose].facing {
-        Facing::AsDrawn => place,
-        Facing::Mirrored => reflected(place, mirror_axis(&drawings[pose].outline)),
+/// A place of the source in the drawing as it is used. Its own inverse. `pose` counts the drawn poses.
+pub(super) fn as_used(scene: &Scene, drawings: &[Drawing], pose: usize, place: Point) -> Point {
+    let drawn = scene.drawn_poses();
+    match drawn.get(pose).and_then(|&pose| scene.drawing_of(pose)) {
+        Some((_, source)) if source.facing == Facing::Mirrored => {
+            reflected(place, mirror_axis(&drawings[pose].outline))
+        }
+        _ => place,
     }
 }
 

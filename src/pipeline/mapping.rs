@@ -2,7 +2,7 @@
 
 use super::landmarks::{self, Landmarks};
 use super::triangulation::{self, Labels, LandmarkLabel};
-use super::{MappingReport, PipelineError, Stage};
+use super::{MappingReport, PipelineError, Stage, deformed};
 use crate::compatible::{
     CompatibleMesh, RefineOptions, Simplification, SimplifyError, SimplifyOptions, TriangulateReport, refine,
     triangulate_features,
@@ -22,7 +22,8 @@ const FINER_LINES: [f64; 4] = [1.0, 0.25, 0.0625, 0.0];
 /// this share of the first one's: good triangles are worth more than few points.
 const VARIED_ANGLES: f64 = 0.97;
 
-/// Maps the drawings of a scene onto one another.
+/// Maps the drawings of a scene onto one another: `drawings` has one a drawn pose, as
+/// [`read_drawings`](super::read_drawings) gives them. Deformed copies are added afterwards.
 ///
 /// # Errors
 /// [`PipelineError`] if holes or landmarks do not fit, or a stage refuses.
@@ -36,6 +37,22 @@ pub fn map_drawings(scene: &Scene, drawings: &[Drawing]) -> Result<(Mapping, Map
 /// # Errors
 /// As [`map_drawings`].
 pub fn map_drawings_observed(
+    scene: &Scene,
+    drawings: &[Drawing],
+    begins: &mut dyn FnMut(Stage),
+) -> Result<(Mapping, MappingReport), PipelineError> {
+    let drawn = scene.only_drawn();
+    if drawn.poses.is_empty() || drawn.poses.len() != drawings.len() {
+        let problem = format!("{} drawings for {} drawn poses", drawings.len(), drawn.poses.len());
+        return Err(PipelineError::stage(&[], None, problem));
+    }
+    let (mapping, mut report) = map_drawn(&drawn, drawings, begins)?;
+    let mapping = deformed::with_copies(scene, drawings, mapping, &mut report)?;
+    Ok((mapping, report))
+}
+
+/// Maps a scene without copies.
+fn map_drawn(
     scene: &Scene,
     drawings: &[Drawing],
     begins: &mut dyn FnMut(Stage),
@@ -116,6 +133,7 @@ pub fn map_drawings_observed(
         matching: matched.outer,
         holes: matched.holes,
         landmarks: placed,
+        deformed: Vec::new(),
         simplification: simplified.report,
         triangulation: bare.report,
         refinement,

@@ -1,5 +1,6 @@
 //! What every stage of the mapping has to say.
 
+use super::DeformedPose;
 use crate::compatible::{RefineReport, SimplifyReport, TriangulateReport};
 use crate::matching::MatchReport;
 use crate::pose::{MeshQuality, PlacedLandmark};
@@ -42,7 +43,9 @@ pub struct MappingReport {
     pub holes: Vec<MatchReport>,
     /// The landmarks on every pose: those on the outline, then those inside, then lines.
     pub landmarks: Vec<PlacedLandmark>,
-    /// Corresponding vertices before and after, and how well the polygons fit.
+    /// Poses that are deformed copies of others, in order. They are not matched: their cost is 0.
+    pub deformed: Vec<DeformedPose>,
+    /// Corresponding vertices before and after, and how well the polygons of the drawn poses fit.
     pub simplification: SimplifyReport,
     /// Steiner vertices by the way they were found.
     pub triangulation: TriangulateReport,

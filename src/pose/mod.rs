@@ -1,11 +1,15 @@
 //! One topology with N embeddings, and the mapping that the pipeline makes of N drawings.
 
+mod carried;
+mod handles;
 mod json;
 mod landmark;
 mod mapping;
 mod pose_set;
 mod quality;
 
+pub use carried::{CarriedOutline, CarryError};
+pub use handles::{DragOptions, DragReport, HandleDeformation, HandleError, HandleScratch, Repair};
 pub use json::{MappingFileError, Polygons};
 pub use landmark::{LandmarkKind, PlacedLandmark};
 pub use mapping::{Mapping, MappingError, Matching};

@@ -18,6 +18,6 @@ mod texture;
 
 pub use camera::Camera;
 pub use frame::Frame;
-pub use painter::Painter;
+pub use painter::{Painter, PoseTexture};
 pub use silhouette::Silhouette;
 pub use texture::Texture;

@@ -1,6 +1,6 @@
 //! One frame from one blended mesh.
 //!
-//! 1. The colours: the mesh is rasterised at [`SAMPLES`]^2 samples a pixel; at each, the textures of the poses are
+//! 1. The colours: the mesh is rasterised at [`SAMPLES`]^2 samples a pixel; at each, the textures are
 //!    looked up through the triangle's affine map and averaged with the texture weights, premultiplied. A pixel's
 //!    colour is the mean of its samples.
 //! 2. The edge: the exact area of each pixel inside the blended outline.
@@ -20,31 +20,54 @@ const FAINTEST_WEIGHT: f64 = 1e-3;
 /// How often colours are spread by one pixel to where the outline leaves the mesh.
 const SPREADS: usize = 3;
 
+/// A texture and the pose on whose drawing it was made.
+#[derive(Debug, Clone)]
+pub struct PoseTexture {
+    /// The texture.
+    pub texture: Texture,
+    /// The pose whose positions are places of its picture.
+    pub drawn_on: usize,
+}
+
 /// Paints frames of one character: built once, used from any number of threads.
 #[derive(Debug, Clone)]
 pub struct Painter {
     triangles: Vec<[usize; 3]>,
-    /// #poses x #vertices, in texels of that pose's texture.
+    /// #textures x #vertices, in texels of the texture.
     texels: Vec<Vec<Point>>,
     textures: Vec<Texture>,
+    /// The texture that each pose shows.
+    texture_of: Vec<usize>,
     silhouette: Silhouette,
     camera: Camera,
 }
 
 impl Painter {
-    /// A painter of `mapping` with one texture a pose, seen by `camera`.
+    /// A painter of `mapping` seen by `camera`. Each texture is drawn on one pose; `texture_of` says which texture each pose
+    /// shows. Poses that show the same one (deformed copies) need no picture of their own: the mesh warps it.
+    ///
+    /// A texture whose pose is not in the mapping, and a pose whose texture does not exist, are not painted.
     #[must_use]
-    pub fn new(mapping: &Mapping, textures: Vec<Texture>, silhouette: Silhouette, camera: Camera) -> Self {
+    pub fn new(
+        mapping: &Mapping,
+        textures: Vec<PoseTexture>,
+        texture_of: Vec<usize>,
+        silhouette: Silhouette,
+        camera: Camera,
+    ) -> Self {
+        let positions = mapping.poses.positions();
+        let texels = |of: &PoseTexture| {
+            positions[of.drawn_on]
+                .iter()
+                .map(|p| of.texture.to_texels(*p))
+                .collect()
+        };
+        let is_known = |of: &PoseTexture| of.drawn_on < positions.len();
         Self {
             triangles: mapping.poses.topology().triangles().to_vec(),
-            texels: mapping
-                .poses
-                .positions()
-                .iter()
-                .zip(&textures)
-                .map(|(positions, texture)| positions.iter().map(|p| texture.to_texels(*p)).collect())
-                .collect(),
-            textures,
+            texels: textures.iter().filter(|of| is_known(of)).map(texels).collect(),
+            textures: textures.into_iter().filter(is_known).map(|of| of.texture).collect(),
+            texture_of,
             silhouette,
             camera,
         }
@@ -91,11 +114,17 @@ impl Painter {
 
     fn colours(&self, placed: &[Point], texture_weights: &[f64], width: usize, height: usize) -> Vec<Mean> {
         let mut colours = vec![Mean::default(); width * height];
-        let counting: Vec<(usize, f32)> = texture_weights
+        let mut of_textures = vec![0.0; self.textures.len()];
+        for (texture, weight) in self.texture_of.iter().zip(texture_weights) {
+            if let Some(sum) = of_textures.get_mut(*texture) {
+                *sum += weight;
+            }
+        }
+        let counting: Vec<(usize, f32)> = of_textures
             .iter()
             .enumerate()
             .filter(|(_, weight)| weight.abs() >= FAINTEST_WEIGHT)
-            .map(|(pose, weight)| (pose, *weight as f32))
+            .map(|(texture, weight)| (texture, *weight as f32))
             .collect();
         let total: f32 = counting.iter().map(|(_, weight)| weight).sum();
         let samples: Vec<Point> = placed.iter().map(|p| p * SAMPLES as f64).collect();
@@ -106,10 +135,10 @@ impl Painter {
                 mapped_triangle = span.triangle;
                 let corners = self.triangles[span.triangle];
                 maps.clear();
-                maps.extend(counting.iter().map(|(pose, _)| {
+                maps.extend(counting.iter().map(|(texture, _)| {
                     AffineMap::between(
                         geometry::corners(&samples, corners),
-                        geometry::corners(&self.texels[*pose], corners),
+                        geometry::corners(&self.texels[*texture], corners),
                     )
                 }));
             }
@@ -117,8 +146,8 @@ impl Painter {
             for column in span.start..span.end {
                 row[column / SAMPLES].count += 1.0;
             }
-            for ((pose, weight), map) in counting.iter().zip(&maps) {
-                let texture = &self.textures[*pose];
+            for ((texture, weight), map) in counting.iter().zip(&maps) {
+                let texture = &self.textures[*texture];
                 let weight = weight / total;
                 let start = map.apply(Point::new(span.start as f64 + 0.5, span.row as f64 + 0.5));
                 let (u, v) = (start.x as f32, start.y as f32);
@@ -274,7 +303,8 @@ mod tests {
         let textures = [[255, 0, 0, 255], [0, 0, 255, 255]]
             .iter()
             .zip(&mapping.outlines)
-            .map(|(colour, outline)| {
+            .enumerate()
+            .map(|(drawn_on, (colour, outline))| {
                 let areas = Coverage::of([outline.outer().points()], 60, 60);
                 let picture = Picture {
                     width: 60,
@@ -287,12 +317,18 @@ mod tests {
                     origin: Point::zeros(),
                     pixels_per_unit: 1.0,
                 };
-                Texture::new(&picture, outline, 1.0)
+                PoseTexture {
+                    texture: Texture::new(&picture, outline, 1.0),
+                    drawn_on,
+                }
             })
             .collect();
         let camera = Camera::fitting(&[Point::new(0.0, 0.0), Point::new(60.0, 60.0)], [60, 60]);
         let silhouette = Silhouette::new(&mapping);
-        (Painter::new(&mapping, textures, silhouette, camera), mapping)
+        (
+            Painter::new(&mapping, textures, vec![0, 1], silhouette, camera),
+            mapping,
+        )
     }
 
     #[test]
@@ -320,6 +356,18 @@ mod tests {
         // A blend of alphas would leave a wide half-clear rim; here at most the pixels on the four sides are.
         let partly = frame.pixels.iter().filter(|p| p[3] > 0 && p[3] < 255).count();
         assert!(partly <= 4 * 32, "{partly}");
+    }
+
+    #[test]
+    fn a_copy_shows_the_picture_of_the_pose_it_copies() {
+        let (mut painter, mapping) = painter();
+        // As if the tall box were a deformed copy of the wide one.
+        painter.texture_of = vec![0, 0];
+        for weights in [[0.0, 1.0], [0.5, 0.5]] {
+            let frame = painter.paint(&mapping.poses.positions()[1], &[0.0, 1.0], &weights);
+            assert!(frame.pixels.iter().all(|p| p[0] == p[3] && p[2] == 0), "red only");
+            assert_eq!(frame.pixels[30 * 60 + 30], [255, 0, 0, 255]);
+        }
     }
 
     #[test]

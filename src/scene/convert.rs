@@ -1,6 +1,7 @@
 //! From the written scene to the validated one.
 
 mod blending;
+mod deformed;
 mod landmarks;
 mod playing;
 mod poses;
@@ -97,6 +98,7 @@ impl Reader<'_> {
         }
         let poses = self.poses(&written.pose)?;
         let names: Vec<&str> = poses.iter().map(|p| p.name.as_str()).collect();
+        self.check_drawn(written.reference.as_ref(), &written.landmark, &poses)?;
         let (landmarks, paths) = self.landmarks(&written.landmark, &names)?;
         let reference = match &written.reference {
             Some(name) => Some(self.pose_index(name, "`reference`", &names)?),

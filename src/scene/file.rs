@@ -99,10 +99,6 @@ pub(super) struct PoseTable {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(
-    dead_code,
-    reason = "read so that misspelt keys are found; the key itself is refused"
-)]
 pub(super) struct HandleTable {
     pub(super) from: Vec<f64>,
     pub(super) to: Vec<f64>,

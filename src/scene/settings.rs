@@ -191,18 +191,55 @@ pub enum Facing {
 pub struct ScenePose {
     /// Its name.
     pub name: String,
-    /// Its drawing, relative to the scene's folder; see [`Scene::source_path`].
-    pub source: PathBuf,
-    /// The line of the scene file that names the source.
-    pub source_line: usize,
-    /// The SVG element whose outline is meant.
-    pub element: Option<String>,
+    /// Where its shape comes from.
+    pub source: PoseSource,
     /// Its place in the pose space.
     pub at: Vec<f64>,
-    /// Whether it is reflected.
-    pub facing: Facing,
     /// Whole turns added to its mean rotation.
     pub turns: i32,
+}
+
+/// Where a pose's shape comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PoseSource {
+    /// A drawing of its own.
+    Drawn(DrawnSource),
+    /// Another pose, deformed.
+    Deformed(DeformedCopy),
+}
+
+/// A drawing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawnSource {
+    /// Its file, relative to the scene's folder; see [`Scene::source_path`].
+    pub file: PathBuf,
+    /// The line of the scene file that names it.
+    pub line: usize,
+    /// The SVG element whose outline is meant.
+    pub element: Option<String>,
+    /// Whether it is reflected.
+    pub facing: Facing,
+}
+
+/// A copy of another pose whose handles are moved as rigidly as possible (NWM 3.2). It has the other's picture, and what
+/// reflects that reflects it, too.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeformedCopy {
+    /// The pose that is deformed; it may be a copy itself. Never the pose itself, directly or by way of others.
+    pub of: usize,
+    /// The line of the scene file with the handles.
+    pub line: usize,
+    /// At least one.
+    pub handles: Vec<HandleMove>,
+}
+
+/// A point of a pose and where it goes, in the coordinates of the drawing as it is in its file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HandleMove {
+    /// On the pose that is deformed.
+    pub from: Point,
+    /// On the copy.
+    pub to: Point,
 }
 
 /// A blend that is wanted elsewhere than it is found (SBE 4).
@@ -258,6 +295,48 @@ impl Scene {
     #[must_use]
     pub fn names(&self) -> Vec<String> {
         self.poses.iter().map(|pose| pose.name.clone()).collect()
+    }
+
+    /// The poses that have a drawing of their own, in order.
+    #[must_use]
+    pub fn drawn_poses(&self) -> Vec<usize> {
+        let is_drawn = |pose: &usize| matches!(self.poses[*pose].source, PoseSource::Drawn(_));
+        (0..self.poses.len()).filter(is_drawn).collect()
+    }
+
+    /// The pose whose drawing pose `index` shows, and that drawing: itself, or the one that it is a copy of in the end.
+    ///
+    /// `None` for a pose that does not exist or is a copy of itself, which no validated scene has.
+    #[must_use]
+    pub fn drawing_of(&self, index: usize) -> Option<(usize, &DrawnSource)> {
+        let mut at = index;
+        for _ in 0..=self.poses.len() {
+            match &self.poses.get(at)?.source {
+                PoseSource::Drawn(drawing) => return Some((at, drawing)),
+                PoseSource::Deformed(copy) => at = copy.of,
+            }
+        }
+        None
+    }
+
+    /// The scene without its deformed copies: what is read and matched.
+    #[must_use]
+    pub fn only_drawn(&self) -> Self {
+        let kept = self.drawn_poses();
+        let place = |index: usize| kept.iter().position(|&k| k == index);
+        let mut scene = self.clone();
+        scene.poses = kept.iter().map(|&k| self.poses[k].clone()).collect();
+        scene.reference = self.reference.and_then(place);
+        if let Reference::Pose(pose) = scene.blend.reference {
+            scene.blend.reference = place(pose).map_or(Reference::Canonical, Reference::Pose);
+        }
+        for (landmark, whole) in scene.landmarks.iter_mut().zip(&self.landmarks) {
+            landmark.at = kept.iter().map(|&k| whole.at[k]).collect();
+        }
+        for (path, whole) in scene.paths.iter_mut().zip(&self.paths) {
+            path.at = kept.iter().map(|&k| whole.at[k].clone()).collect();
+        }
+        scene
     }
 
     /// A short name for files made from this scene: the file's own, or its folder's if it is called `scene.toml`.

@@ -25,16 +25,23 @@ pub(super) fn leaves_folder(source: &str) -> Option<&'static str> {
 }
 
 impl Scene {
-    /// The path of the drawing of pose `index`, with every symbolic link resolved.
+    /// The path of the drawing that pose `index` shows, with every symbolic link resolved.
     ///
     /// # Errors
     /// [`SceneError`] if it does not exist or lies outside the scene's folder.
     pub fn source_path(&self, index: usize) -> Result<PathBuf, SceneError> {
         let pose = &self.poses[index];
-        let written = pose.source.display().to_string();
+        let Some((_, drawing)) = self.drawing_of(index) else {
+            return Err(SceneError {
+                file: self.file.clone(),
+                line: None,
+                problem: SceneProblem::Format(format!("pose '{}' has no drawing", pose.name)),
+            });
+        };
+        let written = drawing.file.display().to_string();
         let failed = |problem| SceneError {
             file: self.file.clone(),
-            line: Some(pose.source_line),
+            line: Some(drawing.line),
             problem,
         };
         let missing = |reason: std::io::Error| {
@@ -49,7 +56,7 @@ impl Scene {
             _ => Path::new("."),
         };
         let folder = folder.canonicalize().map_err(missing)?;
-        let path = folder.join(&pose.source).canonicalize().map_err(missing)?;
+        let path = folder.join(&drawing.file).canonicalize().map_err(missing)?;
         if !path.starts_with(&folder) {
             return Err(failed(SceneProblem::SourceOutside {
                 pose: pose.name.clone(),

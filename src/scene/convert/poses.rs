@@ -8,7 +8,7 @@ use toml::{Spanned, Value};
 use super::{Checked, Reader};
 use crate::scene::error::SceneProblem;
 use crate::scene::file::PoseTable;
-use crate::scene::settings::{Facing, ScenePose};
+use crate::scene::settings::{DrawnSource, Facing, PoseSource, ScenePose};
 use crate::scene::source;
 
 /// The most whole turns that can be added to a pose.
@@ -30,9 +30,10 @@ impl Reader<'_> {
                 },
             ));
         }
+        let names: Vec<String> = tables.iter().map(|t| t.get_ref().name.get_ref().clone()).collect();
         let mut poses: Vec<ScenePose> = Vec::new();
         for (index, table) in tables.iter().enumerate() {
-            let pose = self.pose(table, index, tables.len(), poses.first().map(|p| p.at.len()))?;
+            let pose = self.pose(table, index, &names, poses.first().map(|p| p.at.len()))?;
             let at = table.get_ref().name.span().start;
             if pose.name.is_empty() || poses.iter().any(|p| p.name == pose.name) {
                 return Err(self.fail(
@@ -55,6 +56,7 @@ impl Reader<'_> {
             }
             poses.push(pose);
         }
+        self.check_copies(tables, &poses)?;
         Ok(poses)
     }
 
@@ -62,43 +64,18 @@ impl Reader<'_> {
         &self,
         table: &Spanned<PoseTable>,
         index: usize,
-        count: usize,
+        names: &[String],
         dimension: Option<usize>,
     ) -> Checked<ScenePose> {
         let written = table.get_ref();
         let name = written.name.get_ref().clone();
-        if let Some(of) = &written.deform_of {
-            self.unsupported::<()>(of.span().start, "`deform_of`", "give the pose a source")?;
-        }
-        if let Some(handles) = &written.handles {
-            self.unsupported::<()>(handles.span().start, "`handles`", "give the pose a source")?;
-        }
-        let Some(source) = &written.source else {
-            return Err(self.fail(
-                written.name.span().start,
-                SceneProblem::Format(format!(
-                    "pose '{name}' has no source; add `source = \"FILE\"`, an image or SVG beside the scene file"
-                )),
-            ));
-        };
-        let path = self.word(source, &format!("pose '{name}': source"))?;
-        if let Some(reason) = source::leaves_folder(&path) {
-            return Err(self.fail(
-                source.span().start,
-                SceneProblem::SourceOutside {
-                    pose: name,
-                    path,
-                    reason,
-                },
-            ));
-        }
-        let element = match &written.element {
-            Some(element) => Some(self.word(element, &format!("pose '{name}': element"))?),
-            None => None,
+        let source = match &written.deform_of {
+            Some(of) => PoseSource::Deformed(self.deformed(written, of, names)?),
+            None => PoseSource::Drawn(self.drawn(written)?),
         };
         let at = match &written.at {
             Some(at) => self.place(at, &format!("`at` of pose '{name}'"), dimension)?,
-            None => automatic_place(index, count),
+            None => automatic_place(index, names.len()),
         };
         let turns = written.turns.as_ref().map_or(0, |t| *t.get_ref());
         if turns.abs() > MOST_TURNS {
@@ -113,16 +90,54 @@ impl Reader<'_> {
         }
         Ok(ScenePose {
             name,
-            source: PathBuf::from(path),
-            source_line: self.line(source.span().start),
-            element,
+            source,
             at,
+            turns: turns as i32,
+        })
+    }
+
+    fn drawn(&self, written: &PoseTable) -> Checked<DrawnSource> {
+        let name = written.name.get_ref();
+        if let Some(handles) = &written.handles {
+            return Err(self.fail(
+                handles.span().start,
+                SceneProblem::Format(format!(
+                    "pose '{name}' has handles but no `deform_of`; name the pose that they deform, or remove them"
+                )),
+            ));
+        }
+        let Some(source) = &written.source else {
+            return Err(self.fail(
+                written.name.span().start,
+                SceneProblem::Format(format!(
+                    "pose '{name}' has no source; add `source = \"FILE\"`, an image or SVG beside the scene file, or `deform_of` and handles"
+                )),
+            ));
+        };
+        let path = self.word(source, &format!("pose '{name}': source"))?;
+        if let Some(reason) = source::leaves_folder(&path) {
+            return Err(self.fail(
+                source.span().start,
+                SceneProblem::SourceOutside {
+                    pose: name.clone(),
+                    path,
+                    reason,
+                },
+            ));
+        }
+        let element = match &written.element {
+            Some(element) => Some(self.word(element, &format!("pose '{name}': element"))?),
+            None => None,
+        };
+        Ok(DrawnSource {
+            file: PathBuf::from(path),
+            line: self.line(source.span().start),
+            element,
             facing: if written.mirror == Some(true) {
                 Facing::Mirrored
             } else {
                 Facing::AsDrawn
             },
-            turns: turns as i32,
         })
     }
 

@@ -1,7 +1,7 @@
 use super::*;
 use crate::blend::{FrameGuard, Reference};
 use crate::math::Point;
-use crate::scene::settings::{Anchor, Background, BlendSettings, Facing, Region, SoftAnchor};
+use crate::scene::settings::{Anchor, Background, BlendSettings, Facing, PoseSource, Region, SoftAnchor};
 
 fn parse(text: &str) -> Result<Scene, SceneError> {
     Scene::parse(text, Path::new("cat/scene.toml"))
@@ -83,8 +83,12 @@ keys = [ { time = 0, at = [0, 0] }, { time = 2.0, at = [1, 1] } ]
     assert_eq!(scene.input.holes, Holes::Fill);
     assert_eq!(scene.blend.reference, Reference::Pose(1));
     assert_eq!(scene.blend.anchor, Anchor::Landmark(0));
-    assert_eq!((scene.poses[0].facing, scene.poses[0].turns), (Facing::Mirrored, -1));
-    assert_eq!(scene.poses[1].element.as_deref(), Some("body"));
+    let drawings: Vec<_> = (0..2)
+        .filter_map(|pose| scene.drawing_of(pose))
+        .map(|(_, drawing)| drawing)
+        .collect();
+    assert_eq!((drawings[0].facing, scene.poses[0].turns), (Facing::Mirrored, -1));
+    assert_eq!(drawings[1].element.as_deref(), Some("body"));
     assert_eq!(scene.landmarks[0].at, vec![None, Some(Point::new(12.0, 4.5))]);
     assert_eq!(scene.animation.background, Background::Colour([255, 0, 0, 128]));
     assert_eq!(scene.animation.frame_count(), 48);
@@ -125,11 +129,6 @@ fn keys_of_later_releases_are_refused_by_name() {
         ("[pose_space]\nbounded = true\n", 11, "bounded"),
         ("[pose_space]\nwalls = [[[0.2, 0.0], [0.2, 0.6]]]\n", 11, "walls"),
         (
-            "[[pose]]\nname = \"c\"\ndeform_of = \"a\"\nat = [5, 5]\n",
-            12,
-            "deform_of",
-        ),
-        (
             "[[pose]]\nname = \"c\"\nsource = { body = \"c.svg\" }\nat = [5, 5]\n",
             12,
             "layer",
@@ -142,6 +141,79 @@ fn keys_of_later_releases_are_refused_by_name() {
             "{message}"
         );
     }
+}
+
+/// A pose 'c' that is a copy, from line 10; its keys from line 12.
+fn copy(keys: &str) -> String {
+    format!("{TWO}[[pose]]\nname = \"c\"\n{keys}at = [5, 5]\n")
+}
+
+const HANDLES: &str = "handles = [ { from = [1, 2], to = [3.5, 4] } ]\n";
+
+#[test]
+fn copies_know_their_drawing() {
+    let text = copy(&format!("deform_of = \"b\"\n{HANDLES}turns = 1\n"))
+        + "[[pose]]\nname = \"d\"\ndeform_of = \"c\"\nat = [6, 6]\n"
+        + HANDLES
+        + "[[landmark]]\nname = \"nose\"\nat = { b = [1, 2] }\n";
+    let scene = parse(&text).expect("a scene");
+    let PoseSource::Deformed(made) = &scene.poses[2].source else {
+        panic!("a copy")
+    };
+    assert_eq!(
+        (made.of, made.handles[0].to, scene.poses[2].turns),
+        (1, Point::new(3.5, 4.0), 1)
+    );
+    assert_eq!(scene.drawn_poses(), [0, 1]);
+    let roots: Vec<usize> = (0..4)
+        .filter_map(|pose| scene.drawing_of(pose))
+        .map(|(root, _)| root)
+        .collect();
+    assert_eq!(roots, [0, 1, 1, 1]);
+    let drawn = scene.only_drawn();
+    assert_eq!(drawn.names(), ["a", "b"]);
+    assert_eq!(drawn.landmarks[0].at, [None, Some(Point::new(1.0, 2.0))]);
+}
+
+#[test]
+fn copies_that_make_no_sense_are_refused() {
+    let of = |name: &str| format!("deform_of = \"{name}\"\n");
+    for (keys, line, words) in [
+        (of("a"), 12, "no handles"),
+        (of("a") + "handles = []\n", 12, "no handles"),
+        (of("z") + HANDLES, 12, "'z', but the poses are 'a', 'b', 'c'"),
+        (of("c") + HANDLES, 12, "copy of itself"),
+        (of("a") + "source = \"c.png\"\n" + HANDLES, 13, "remove `source`"),
+        (of("a") + "mirror = true\n" + HANDLES, 12, "remove `mirror`"),
+        ("source = \"c.png\"\n".to_owned() + HANDLES, 13, "no `deform_of`"),
+        (
+            of("a") + "handles = [ { from = [1], to = [3, 4] } ]\n",
+            13,
+            "`from` of handle 0 of pose 'c'",
+        ),
+        (
+            of("a") + "handles = [ { from = [1, 2], to = [3, inf] } ]\n",
+            13,
+            "`to` of handle 0 of pose 'c'",
+        ),
+    ] {
+        let (found, message) = refused(&copy(&keys));
+        assert_eq!(found, Some(line), "{message}");
+        assert!(message.contains(words) && message.contains("'c'"), "{message}");
+    }
+    let circle = copy(&(of("d") + HANDLES)) + "[[pose]]\nname = \"d\"\nat = [6, 6]\n" + &of("c") + HANDLES;
+    assert!(refused(&circle).1.contains("copy of itself"));
+    let good = copy(&(of("a") + HANDLES));
+    let (line, message) = refused(&format!("reference = \"c\"\n{good}"));
+    assert!(
+        line == Some(1) && message.contains("'c', a deformed copy"),
+        "{line:?} {message}"
+    );
+    let (line, message) = refused(&format!("{good}[[landmark]]\nname = \"nose\"\nat = {{ c = [1, 2] }}\n"));
+    assert!(
+        line == Some(17) && message.contains("'nose' names pose 'c'"),
+        "{line:?} {message}"
+    );
 }
 
 #[test]

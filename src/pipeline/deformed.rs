@@ -1,0 +1,209 @@
+//! Deformed copies become poses of the mapping (NWM 3.2).
+//!
+//! 1. The drawn poses are mapped without the copies.
+//! 2. Each copy, after the pose that it is a copy of: its handles deform that pose's mesh; the result is proven to be an
+//!    embedding.
+//! 3. Outline, landmarks and correspondence are carried by the mesh: the copy is not matched.
+//!
+//! Handles are given in the coordinates of the drawing as it is in its file, and are reflected with it where the pose that
+//! it belongs to says `mirror = true`.
+
+use super::landmarks::as_used;
+use super::{MappingReport, PipelineError};
+use crate::input::Drawing;
+use crate::matching::{Correspondence, PoseMatch, SalientPoint};
+use crate::math::Point;
+use crate::mesh::PointLocator;
+use crate::mesh::validity::{self, ValidityError};
+use crate::outline::{Outline, OutlineError};
+use crate::pose::{
+    CarriedOutline, DragReport, HandleDeformation, HandleError, Mapping, Matching, MeshQuality, PoseSet,
+};
+use crate::scene::{DeformedCopy, HandleMove, PoseSource, Scene};
+
+/// How a deformed copy came about.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct DeformedPose {
+    /// Which pose it is.
+    pub pose: usize,
+    /// Which pose it is a copy of.
+    pub of: usize,
+    /// How its handles were dragged.
+    pub drag: DragReport,
+}
+
+/// A pose of the whole scene while it is put together.
+struct Pose {
+    positions: Vec<Point>,
+    outline: Outline,
+    /// Per row of the correspondence.
+    parameters: Vec<f64>,
+    /// Per landmark.
+    landmarks: Vec<Vec<Point>>,
+    matched: PoseMatch,
+}
+
+/// The mapping of all poses of `scene` from that of the drawn ones; `report` is completed.
+pub(super) fn with_copies(
+    scene: &Scene,
+    drawings: &[Drawing],
+    drawn: Mapping,
+    report: &mut MappingReport,
+) -> Result<Mapping, PipelineError> {
+    let order = scene.drawn_poses();
+    if order.len() == scene.poses.len() {
+        return Ok(drawn);
+    }
+    let names = scene.names();
+    let mut poses: Vec<Option<Pose>> = (0..names.len()).map(|_| None).collect();
+    for (k, &pose) in order.iter().enumerate() {
+        poses[pose] = Some(Pose {
+            positions: drawn.poses.positions()[k].clone(),
+            outline: drawn.outlines[k].clone(),
+            parameters: drawn.matching.outer.rows().iter().map(|row| row[k]).collect(),
+            landmarks: report.landmarks.iter().map(|landmark| landmark.at[k].clone()).collect(),
+            matched: report.matching.poses[k].clone(),
+        });
+    }
+    // Copies of copies need a round each; a validated scene has no circle.
+    for _ in 0..names.len() {
+        for (pose, said) in scene.poses.iter().enumerate() {
+            let PoseSource::Deformed(copy) = &said.source else {
+                continue;
+            };
+            let (None, Some(base)) = (&poses[pose], &poses[copy.of]) else {
+                continue;
+            };
+            let (deformed, drag) = deformed(scene, drawings, &drawn, pose, copy, base)?;
+            report.deformed.push(DeformedPose {
+                pose,
+                of: copy.of,
+                drag,
+            });
+            poses[pose] = Some(deformed);
+        }
+    }
+    report.deformed.sort_by_key(|deformed| deformed.pose);
+    let poses: Vec<Pose> = poses
+        .into_iter()
+        .collect::<Option<_>>()
+        .ok_or_else(|| PipelineError::stage(&[], None, "a pose is a deformed copy of itself"))?;
+    for (k, landmark) in report.landmarks.iter_mut().enumerate() {
+        let given: Vec<bool> = (0..poses.len())
+            .map(|pose| {
+                order
+                    .iter()
+                    .position(|&p| p == pose)
+                    .is_some_and(|at| landmark.given[at])
+            })
+            .collect();
+        landmark.given = given;
+        landmark.at = poses.iter().map(|pose| pose.landmarks[k].clone()).collect();
+    }
+    report.matching.poses = poses.iter().map(|pose| pose.matched.clone()).collect();
+    let rows = drawn.matching.outer.rows().len();
+    let rows = (0..rows)
+        .map(|row| poses.iter().map(|pose| pose.parameters[row]).collect())
+        .collect();
+    let (positions, outlines): (Vec<_>, Vec<_>) = poses.into_iter().map(|pose| (pose.positions, pose.outline)).unzip();
+    let whole = Mapping {
+        poses: PoseSet::new(
+            drawn.poses.topology().clone(),
+            names.iter().cloned().zip(positions).collect(),
+        )
+        .map_err(|error| PipelineError::stage(&names, None, error))?,
+        outlines,
+        rings: drawn.rings,
+        steiner: drawn.steiner,
+        matching: Matching {
+            reference: order[drawn.matching.reference],
+            outer: Correspondence::new(rows).map_err(|error| PipelineError::stage(&names, None, error))?,
+        },
+    };
+    report.quality = MeshQuality::of(&whole.poses);
+    Ok(whole)
+}
+
+fn deformed(
+    scene: &Scene,
+    drawings: &[Drawing],
+    drawn: &Mapping,
+    pose: usize,
+    copy: &DeformedCopy,
+    base: &Pose,
+) -> Result<(Pose, DragReport), PipelineError> {
+    let name = || scene.poses[pose].name.clone();
+    let refusal = |message: String| PipelineError::Deformation {
+        pose: name(),
+        of: scene.poses[copy.of].name.clone(),
+        line: copy.line,
+        message,
+    };
+    let drawing = (scene.drawing_of(pose)).and_then(|(root, _)| scene.drawn_poses().iter().position(|&p| p == root));
+    let drawing = drawing.ok_or_else(|| refusal("it has no drawing".to_owned()))?;
+    let ends = |end: fn(&HandleMove) -> Point| -> Vec<Point> {
+        copy.handles
+            .iter()
+            .map(|handle| as_used(scene, drawings, drawing, end(handle)))
+            .collect()
+    };
+    let (from, to) = (ends(|handle| handle.from), ends(|handle| handle.to));
+    let topology = drawn.poses.topology();
+    let mut positions = Vec::new();
+    let drag = HandleDeformation::new(topology, &base.positions, &from)
+        .and_then(|deformation| deformation.drag(&to, &mut deformation.scratch(), &mut positions))
+        .map_err(|error: HandleError| refusal(error.to_string()))?;
+    validity::check_embedding(topology, &positions, &drawn.rings).map_err(|error| refusal(overlap(&error, &to)))?;
+    let carried = CarriedOutline::new(topology, &base.positions, &positions, &base.outline)
+        .map_err(|error| refusal(error.to_string()))?;
+    let locator = PointLocator::new(topology.triangles(), &base.positions);
+    let carry = |p: &Point| -> Point {
+        locator.nearest(*p).map_or(*p, |found| {
+            let corners = topology.triangles()[found.triangle].iter().zip(found.barycentric);
+            corners.map(|(&v, share)| positions[v] * share).sum()
+        })
+    };
+    let landmarks = base
+        .landmarks
+        .iter()
+        .map(|points| points.iter().map(carry).collect())
+        .collect();
+    // Nothing was matched, so nothing is doubtful.
+    let matched = PoseMatch {
+        cost: 0.0,
+        mismatch: vec![0.0; base.matched.mismatch.len()],
+        looks_mirrored: false,
+        reflection_ratio: 1.0,
+        salient: (base.matched.salient.iter())
+            .map(|salient| SalientPoint {
+                parameter: carried.parameter(0, salient.parameter),
+                ..*salient
+            })
+            .collect(),
+        landmarks: base.matched.landmarks.clone(),
+    };
+    let whole = Pose {
+        parameters: base.parameters.iter().map(|&t| carried.parameter(0, t)).collect(),
+        outline: carried.outline,
+        positions,
+        landmarks,
+        matched,
+    };
+    Ok((whole, drag))
+}
+
+/// What is wrong with a deformed mesh, and what would help.
+fn overlap(error: &ValidityError, targets: &[Point]) -> String {
+    let ValidityError::BoundaryNotSimple(OutlineError::EdgesMeet { x, y, .. }) = error else {
+        return format!("{error}; drag the handles less far");
+    };
+    let place = Point::new(*x, *y);
+    let distance = |handle: &usize| (targets[*handle] - place).norm();
+    let nearest = (0..targets.len())
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        .unwrap_or(0);
+    format!(
+        "parts of the shape come to lie over one another near ({x:.1}, {y:.1}); drag handle {nearest}, the nearest, so that they stay apart"
+    )
+}

@@ -1,0 +1,59 @@
+//! Every scene in `data` is mapped and shows each of its poses.
+
+use std::path::{Path, PathBuf};
+
+use inbetween::pipeline::Character;
+use inbetween::scene::Scene;
+
+fn scene_file(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("data")
+        .join(name)
+        .join("scene.toml")
+}
+
+/// The scene's character, its mapping proven, every pose seen at its place.
+fn shown(name: &str) {
+    let scene = Scene::open(&scene_file(name)).expect("a scene");
+    let character = Character::new(&scene, [96, 108]).expect("a character");
+    character.mapping().check().expect("a valid mapping");
+    assert_eq!(character.mapping().poses.len(), scene.poses.len());
+    for pose in &scene.poses {
+        let frame = character.frame_at(&pose.at).expect("a frame");
+        // Every scene stands before a colour: the character is what differs from the corner.
+        let differing = frame.pixels.iter().filter(|p| **p != frame.pixels[0]).count();
+        assert!(differing > 500, "{name}, {}: {differing} pixels", pose.name);
+    }
+}
+
+#[test]
+fn the_walker() {
+    shown("walker");
+}
+
+#[test]
+fn the_snake() {
+    shown("snake");
+}
+
+#[test]
+fn the_face() {
+    shown("face");
+}
+
+#[test]
+fn the_clown() {
+    shown("clown");
+}
+
+#[test]
+fn no_scene_is_forgotten() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    let folders = std::fs::read_dir(data).expect("a folder");
+    let mut names: Vec<String> = folders
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .filter(|name| scene_file(name).is_file())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["clown", "face", "snake", "walker"]);
+}
