@@ -4,6 +4,8 @@ use proptest::prelude::*;
 
 use super::*;
 
+mod plane;
+
 fn places(points: &[[f64; 2]]) -> Vec<Vec<f64>> {
     points.iter().map(|p| p.to_vec()).collect()
 }
@@ -134,14 +136,37 @@ fn weights_do_not_kink_between_vertices() {
     }
 }
 
+/// The weights of `poses`, in a frame of their own, on a given mesh.
+fn solved(mesh: tessellation::Tessellation, poses: &[crate::math::Point], energy: Energy) -> surface::Surface {
+    let (epsilon, gradient_unit) = match energy {
+        Energy::Hessian => (1e-3, 1024.0),
+        Energy::JacobianDifferences => (1e-3, 1.0),
+    };
+    let plan = space::Plan {
+        poses,
+        walls: &walls::Walls::default(),
+        energy,
+        epsilon,
+        range: Range::Free,
+        flat: Vec::new(),
+        pulled: Vec::new(),
+        frame: space::Frame {
+            centre: crate::math::Point::zeros(),
+            diagonal: 1.0,
+        },
+        held: Vec::new(),
+    };
+    let space = space::Space::on_mesh(mesh, gradient_unit, &plan, &space::Wishes::default()).expect("a layout");
+    space.surface().clone()
+}
+
 #[test]
 fn the_default_energy_converges() {
     // The same weights from a mesh with four times the vertices.
     let poses = [[-0.4, -0.3], [0.4, -0.3], [0.4, 0.3], [-0.1, 0.1], [0.0, 0.15]].map(crate::math::Point::from);
     let surface = |refinement: u32| {
-        let mesh = tessellation::graded(&poses, refinement);
-        let jets = hessian::minimise(&mesh, poses.len(), 1.0).expect("a layout");
-        surface::Surface::new(mesh, jets, poses.len())
+        let mesh = tessellation::graded(&poses, &walls::Walls::default(), refinement).expect("no walls");
+        solved(mesh, &poses, Energy::Hessian)
     };
     let (coarse, fine) = (surface(0), surface(1));
     let (mut a, mut b) = (Vec::new(), Vec::new());
