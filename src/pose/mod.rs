@@ -1,11 +1,13 @@
 //! One topology with N embeddings, and the mapping that the pipeline makes of N drawings.
 
+mod distance;
 mod json;
 mod landmark;
 mod mapping;
 mod pose_set;
 mod quality;
 
+pub use distance::deformation_distances;
 pub use json::{MappingFileError, Polygons};
 pub use landmark::{LandmarkKind, PlacedLandmark};
 pub use mapping::{Mapping, MappingError, Matching};

@@ -18,6 +18,6 @@ pub use animation::{Animation, Key};
 pub use error::{SceneError, SceneProblem};
 pub use new::{NewPose, scene_text};
 pub use settings::{
-    Anchor, Background, BlendSettings, Facing, Holes, InputSettings, MeshSettings, PoseSpaceSettings, Provider,
-    PseudoPose, Radial, Region, Scene, SceneLandmark, ScenePath, ScenePose, SoftAnchor,
+    Anchor, Background, BlendSettings, Facing, Holes, InputSettings, Layout, MeshSettings, PoseSpaceSettings, Provider,
+    PseudoPose, Radial, Region, Scene, SceneLandmark, ScenePath, ScenePose, SoftAnchor, WeightRange,
 };
