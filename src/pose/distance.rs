@@ -83,7 +83,11 @@ fn walk(topology: &Topology) -> Vec<(usize, Option<usize>)> {
 fn between(poses: &PoseSet, order: &[(usize, Option<usize>)], a: usize, b: usize) -> f64 {
     let triangles = poses.topology().triangles();
     let corners = |pose: usize, triangle: usize| geometry::corners(&poses.positions()[pose], triangles[triangle]);
-    let whole = |pose: usize| -> f64 { (0..triangles.len()).map(|t| geometry::signed_area(corners(pose, t))).sum() };
+    let whole = |pose: usize| -> f64 {
+        (0..triangles.len())
+            .map(|t| geometry::signed_area(corners(pose, t)))
+            .sum()
+    };
     let (whole_a, whole_b) = (whole(a), whole(b));
     // Share of the area, rotation, and logarithm of the stretch of each triangle.
     let mut maps = vec![(0.0, 0.0, Matrix::zeros()); triangles.len()];
@@ -153,7 +157,10 @@ mod tests {
     fn strips(cells: usize, bends: &[&dyn Fn(f64) -> f64]) -> PoseSet {
         let triangles = (0..cells).flat_map(|k| [[2 * k, 2 * k + 2, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 1]]);
         let topology = Topology::new(2 * cells + 2, triangles.collect()).expect("a mesh");
-        let poses = bends.iter().enumerate().map(|(k, bend)| (format!("p{k}"), strip(cells, bend)));
+        let poses = bends
+            .iter()
+            .enumerate()
+            .map(|(k, bend)| (format!("p{k}"), strip(cells, bend)));
         PoseSet::new(topology, poses.collect()).expect("poses")
     }
 

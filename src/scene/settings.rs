@@ -292,7 +292,9 @@ impl Scene {
         for (pose, place) in scene.poses.iter_mut().zip(places) {
             pose.at.clone_from(place);
         }
-        scene.animation = self.animation.through(scene.poses.iter().map(|pose| pose.at.as_slice()));
+        scene.animation = self
+            .animation
+            .through(scene.poses.iter().map(|pose| pose.at.as_slice()));
         scene.layout = Layout::Given;
         scene
     }

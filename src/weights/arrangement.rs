@@ -95,7 +95,11 @@ fn classical(wanted: &[Vec<f64>]) -> Vec<Point> {
         .collect();
     let mean = means.iter().sum::<f64>() / count as f64;
     let mut products: Vec<Vec<f64>> = (0..count)
-        .map(|a| (0..count).map(|b| -0.5 * (squared(a, b) - means[a] - means[b] + mean)).collect())
+        .map(|a| {
+            (0..count)
+                .map(|b| -0.5 * (squared(a, b) - means[a] - means[b] + mean))
+                .collect()
+        })
         .collect();
     let vectors = eigenvectors(&mut products);
     let mut order: Vec<usize> = (0..count).collect();
@@ -104,7 +108,9 @@ fn classical(wanted: &[Vec<f64>]) -> Vec<Point> {
         let k = order[rank];
         products[k][k].max(0.0).sqrt() * vectors[pose][k]
     };
-    (0..count).map(|pose| Point::new(coordinate(0, pose), coordinate(1, pose))).collect()
+    (0..count)
+        .map(|pose| Point::new(coordinate(0, pose), coordinate(1, pose)))
+        .collect()
 }
 
 /// Makes a symmetric matrix diagonal by Jacobi rotations; returns the eigenvectors as columns.
@@ -152,12 +158,20 @@ fn majorise(places: &mut Vec<Point>, wanted: &[Vec<f64>]) {
                     let apart = places[a] - places[b];
                     let distance = apart.norm();
                     // Of two poses at one place neither direction is better.
-                    if distance > 0.0 { apart * (wanted[a][b] / distance) } else { Point::zeros() }
+                    if distance > 0.0 {
+                        apart * (wanted[a][b] / distance)
+                    } else {
+                        Point::zeros()
+                    }
                 };
                 (0..count).map(pull).sum::<Point>() / count as f64
             })
             .collect();
-        let changed = places.iter().zip(&next).map(|(p, q)| (p - q).norm()).fold(0.0, f64::max);
+        let changed = places
+            .iter()
+            .zip(&next)
+            .map(|(p, q)| (p - q).norm())
+            .fold(0.0, f64::max);
         *places = next;
         if changed < SETTLED {
             break;
@@ -185,7 +199,11 @@ fn push_apart(places: &mut Vec<Point>) {
                     between / distance
                 } else {
                     let out = places[a] + places[b];
-                    let out = if out.norm() > 1e-9 { out.normalize() } else { Point::new(1.0, 0.0) };
+                    let out = if out.norm() > 1e-9 {
+                        out.normalize()
+                    } else {
+                        Point::new(1.0, 0.0)
+                    };
                     Point::new(-out.y, out.x)
                 };
                 let step = direction * (0.5 * (apart - distance) + STEP);
@@ -232,7 +250,9 @@ mod tests {
     use std::f64::consts::TAU;
 
     fn table(count: usize, distance: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
-        (0..count).map(|a| (0..count).map(|b| distance(a, b)).collect()).collect()
+        (0..count)
+            .map(|a| (0..count).map(|b| distance(a, b)).collect())
+            .collect()
     }
 
     fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -241,7 +261,9 @@ mod tests {
 
     fn closest(places: &[[f64; 2]]) -> f64 {
         let pairs = (0..places.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
-        pairs.map(|(a, b)| apart(places[a], places[b])).fold(f64::INFINITY, f64::min)
+        pairs
+            .map(|(a, b)| apart(places[a], places[b]))
+            .fold(f64::INFINITY, f64::min)
     }
 
     #[test]

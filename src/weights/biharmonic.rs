@@ -148,7 +148,12 @@ impl BiharmonicWeights {
         let frame = frame(&layout, options)?;
         let plain = asks_for_found_weights(options).then(|| {
             let plain = BiharmonicOptions {
-                objectives: options.objectives.iter().filter(|wish| !wish.pulls()).cloned().collect(),
+                objectives: options
+                    .objectives
+                    .iter()
+                    .filter(|wish| !wish.pulls())
+                    .cloned()
+                    .collect(),
                 pseudo_poses: Vec::new(),
                 ..options.clone()
             };
@@ -246,7 +251,12 @@ impl BiharmonicWeights {
         self.check_pose(pose)?;
         let mut places = self.places.clone();
         places[pose] = place.to_vec();
-        self.edit(places, self.options.clone(), |space, poses| space.hold(pose, poses[pose]), Some(pose))
+        self.edit(
+            places,
+            self.options.clone(),
+            |space, poses| space.hold(pose, poses[pose]),
+            Some(pose),
+        )
     }
 
     /// Adds a pose after the last one. [`Target::Weights`] do not ask for any of it. On an error nothing has changed.
@@ -263,7 +273,12 @@ impl BiharmonicWeights {
             }
         }
         let last = self.places.len();
-        self.edit(places, options, |space, poses| space.hold(last, poses[last]), Some(last))
+        self.edit(
+            places,
+            options,
+            |space, poses| space.hold(last, poses[last]),
+            Some(last),
+        )
     }
 
     /// Removes a pose; later ones move up by one. What [`Target::Weights`] ask of it is shared out in proportion among the
@@ -447,7 +462,10 @@ fn frame(layout: &Layout, options: &BiharmonicOptions) -> Result<Frame, WeightEr
     if layout.len() == 1 && options.extent.is_none() {
         return Ok(Frame { centre, diagonal: 1.0 });
     }
-    let outside = layout.places().iter().map(|place| (Point::new(place[0], place[1]) - centre).amax());
+    let outside = layout
+        .places()
+        .iter()
+        .map(|place| (Point::new(place[0], place[1]) - centre).amax());
     let furthest = outside.fold(0.0, f64::max);
     if diagonal > 0.0 && furthest <= 0.5 * REACH * diagonal {
         Ok(Frame { centre, diagonal })

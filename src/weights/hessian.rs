@@ -37,9 +37,7 @@ pub(super) fn energy(mesh: &Tessellation, sizes: &[f64], gradient_weights: &[f64
         let corners = geometry::corners(&mesh.positions, triangle);
         let edges = geometry::edge_matrix(corners);
         let shape: [u64; 4] = std::array::from_fn(|k| edges.as_slice()[k].to_bits());
-        let form = forms
-            .entry(shape)
-            .or_insert_with(|| clough_tocher::stiffness(corners));
+        let form = forms.entry(shape).or_insert_with(|| clough_tocher::stiffness(corners));
         for row in 0..9 {
             for column in 0..9 {
                 let to = 3 * triangle[row / 3] + row % 3;

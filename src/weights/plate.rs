@@ -20,8 +20,11 @@
 
 use std::borrow::Borrow;
 
+use rayon::prelude::*;
+
 use super::WeightError;
 use super::elements::{Entry, Form};
+use crate::math::vectorised;
 use crate::solve::{DenseMatrix, SolvedDense, SparseCholesky, Triplets};
 
 /// Right-hand sides solved together.
@@ -159,18 +162,18 @@ impl Plate {
 
     /// For every form `m` the solution of `K f = m` with 0 at the pins.
     fn solved(&self, forms: &[Form]) -> Result<Vec<Vec<f64>>, WeightError> {
-        let mut shapes = Vec::with_capacity(forms.len());
-        for together in forms.chunks(LANES) {
-            if together.len() == 1 {
-                self.solve_lanes::<1>(together, &mut shapes)?;
-            } else {
-                self.solve_lanes::<LANES>(together, &mut shapes)?;
-            }
-        }
-        Ok(shapes)
+        // Columns have nothing to do with one another: the same however many threads share them.
+        let solved: Result<Vec<_>, _> = forms
+            .par_chunks(LANES)
+            .map(|together| match together.len() {
+                1 => self.solve_lanes::<1>(together),
+                _ => self.solve_lanes::<LANES>(together),
+            })
+            .collect();
+        Ok(solved?.into_iter().flatten().collect())
     }
 
-    fn solve_lanes<const K: usize>(&self, forms: &[Form], shapes: &mut Vec<Vec<f64>>) -> Result<(), WeightError> {
+    fn solve_lanes<const K: usize>(&self, forms: &[Form]) -> Result<Vec<Vec<f64>>, WeightError> {
         let unknown_count = self.free.len() + self.pins.len();
         let mut right = vec![[0.0; K]; unknown_count];
         for (lane, form) in forms.iter().enumerate() {
@@ -180,14 +183,14 @@ impl Plate {
         }
         let mut lanes: Vec<[f64; K]> = self.free.iter().map(|&unknown| right[unknown]).collect();
         self.factor.solve(&mut lanes, &mut Vec::new())?;
-        for lane in 0..forms.len() {
+        let shape = |lane: usize| {
             let mut shape = vec![0.0; unknown_count];
             for (&unknown, solved) in self.free.iter().zip(&lanes) {
                 shape[unknown] = solved[lane];
             }
-            shapes.push(shape);
-        }
-        Ok(())
+            shape
+        };
+        Ok((0..forms.len()).map(shape).collect())
     }
 
     /// The functions of least energy: #unknowns x #functions.
@@ -266,14 +269,16 @@ impl Plate {
     fn sum<S: Borrow<[f64]>>(&self, terms: &[(S, Vec<f64>)], count: usize) -> Vec<f64> {
         let unknown_count = self.free.len() + self.pins.len();
         let mut functions = vec![0.0; unknown_count * count];
-        for (unknown, row) in functions.chunks_exact_mut(count).enumerate() {
-            for (shape, factors) in terms {
-                let height = shape.borrow()[unknown];
-                for (value, factor) in row.iter_mut().zip(factors) {
-                    *value += height * factor;
+        vectorised(|| {
+            for (unknown, row) in functions.chunks_exact_mut(count).enumerate() {
+                for (shape, factors) in terms {
+                    let height = shape.borrow()[unknown];
+                    for (value, factor) in row.iter_mut().zip(factors) {
+                        *value += height * factor;
+                    }
                 }
             }
-        }
+        });
         functions
     }
 }

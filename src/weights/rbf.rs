@@ -29,6 +29,7 @@ mod fit;
 
 use super::layout::Layout;
 use super::{WeightError, WeightProvider, check_place, check_places};
+use crate::math::vectorised;
 use crate::solve::DenseMatrix;
 use fit::Fitted;
 
@@ -208,7 +209,8 @@ impl WeightProvider for RbfWeights {
         check_place(at, self.dimension())?;
         weights.clear();
         weights.resize(self.pose_count(), 0.0);
-        self.fitted.weights(at.as_chunks::<1>().0, weights.as_chunks_mut::<1>().0);
+        self.fitted
+            .weights(at.as_chunks::<1>().0, weights.as_chunks_mut::<1>().0);
         if weights.iter().all(|weight| weight.is_finite()) {
             Ok(())
         } else {
@@ -231,7 +233,7 @@ impl WeightProvider for RbfWeights {
                     along[lane] = *coordinate;
                 }
             }
-            self.fitted.weights(&coordinates, &mut found);
+            vectorised(|| self.fitted.weights(&coordinates, &mut found));
             for (lane, row) in out.chunks_exact_mut(pose_count).enumerate() {
                 for (weight, found) in row.iter_mut().zip(&found) {
                     *weight = found[lane];

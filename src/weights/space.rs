@@ -114,7 +114,8 @@ impl Space {
         let fields = |regions: &[(&Region, f64)], unit: f64| -> Vec<Box<dyn Fn(Point) -> f64 + '_>> {
             let field = |&(region, strength): &(&Region, f64)| {
                 let region = region.clone();
-                Box::new(move |p: Point| unit * strength * region.at(plan.frame.to_layout(p))) as Box<dyn Fn(Point) -> f64>
+                Box::new(move |p: Point| unit * strength * region.at(plan.frame.to_layout(p)))
+                    as Box<dyn Fn(Point) -> f64>
             };
             regions.iter().map(field).collect()
         };
@@ -151,7 +152,10 @@ impl Space {
         };
         let places: Vec<Point> = plan.held.iter().map(|(place, _)| *place).collect();
         let loads = space.loads(&places)?;
-        space.held = loads.into_iter().zip(plan.held.iter().map(|(_, softness)| *softness)).collect();
+        space.held = loads
+            .into_iter()
+            .zip(plan.held.iter().map(|(_, softness)| *softness))
+            .collect();
         space.settle(wishes)?;
         Ok(space)
     }

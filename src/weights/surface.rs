@@ -49,7 +49,8 @@ impl Surface {
 
     /// Where `p`, or the nearest point of the mesh, is. `None` only without triangles.
     pub(super) fn locate(&self, p: Point) -> Option<Located> {
-        self.locator.nearest(p.map(|coordinate| coordinate.clamp(-REACH, REACH)))
+        self.locator
+            .nearest(p.map(|coordinate| coordinate.clamp(-REACH, REACH)))
     }
 
     /// The values at `p`, or at the nearest point of the mesh; `values` is overwritten.

@@ -174,8 +174,8 @@ fn triangulate(
     };
     // Without edges the order of the vertices is all that it depends on. Only coordinates that are not finite, too large or
     // too small are refused, and there are none.
-    let mut mesh = ConstrainedDelaunayTriangulation::<Point2<f64>>::bulk_load_cdt(vertices, Vec::new())
-        .map_err(|_| tangled())?;
+    let mut mesh =
+        ConstrainedDelaunayTriangulation::<Point2<f64>>::bulk_load_cdt(vertices, Vec::new()).map_err(|_| tangled())?;
     // Equal points would have been merged, and all later ones would have other numbers.
     if mesh.num_vertices() != positions.len() {
         return Err(tangled());

@@ -114,7 +114,10 @@ impl Walls {
             if self.segments.len() > MOST_SEGMENTS {
                 return false;
             }
-            let split = self.point_on(next).map(|on| (next, on)).or_else(|| self.cross_before(next));
+            let split = self
+                .point_on(next)
+                .map(|on| (next, on))
+                .or_else(|| self.cross_before(next));
             match split {
                 Some((segment, on)) => {
                     let [a, b] = self.segments[segment];
@@ -128,7 +131,8 @@ impl Walls {
         }
         // A segment may have been drawn twice.
         let mut seen = BTreeSet::new();
-        self.segments.retain(|&[a, b]| a != b && seen.insert((a.min(b), a.max(b))));
+        self.segments
+            .retain(|&[a, b]| a != b && seen.insert((a.min(b), a.max(b))));
         true
     }
 
@@ -197,7 +201,11 @@ fn clipped(a: Point, b: Point, reach: f64) -> Option<[Point; 2]> {
         }
         (a + step * t).map(|v| {
             let side = reach.copysign(v);
-            if (v - side).abs() < 1e-12 { side } else { v.clamp(-reach, reach) }
+            if (v - side).abs() < 1e-12 {
+                side
+            } else {
+                v.clamp(-reach, reach)
+            }
         })
     };
     (from < to).then(|| [at(from, a), at(to, b)])
@@ -209,7 +217,10 @@ mod tests {
     use proptest::prelude::*;
 
     fn lines(walls: &[&[[f64; 2]]]) -> Vec<Vec<Point>> {
-        walls.iter().map(|wall| wall.iter().map(|&p| Point::from(p)).collect()).collect()
+        walls
+            .iter()
+            .map(|wall| wall.iter().map(|&p| Point::from(p)).collect())
+            .collect()
     }
 
     #[test]
@@ -237,10 +248,19 @@ mod tests {
         let refused = |walls: &[Vec<Point>]| Walls::new(walls, &[Point::new(0.5, 0.0)], 4.0).expect_err("bad");
         assert_eq!(
             refused(&long),
-            WeightError::Wall { wall: 0, problem: WallProblem::TouchesPose { pose: 0 } }
+            WeightError::Wall {
+                wall: 0,
+                problem: WallProblem::TouchesPose { pose: 0 }
+            }
         );
         let dot = lines(&[&[[1.0, 0.0], [2.0, 0.0]], &[[1.0, 1.0], [1.0, 1.0]]]);
-        assert_eq!(refused(&dot), WeightError::Wall { wall: 1, problem: WallProblem::Degenerate });
+        assert_eq!(
+            refused(&dot),
+            WeightError::Wall {
+                wall: 1,
+                problem: WallProblem::Degenerate
+            }
+        );
     }
 
     proptest! {

@@ -220,13 +220,25 @@ fn walls_and_bounds_are_read() {
 fn a_scene_without_places_takes_them_later() {
     let text = TWO.replace("at = [0, 0]\n", "").replace("at = [1.0, 0.5]\n", "");
     let scene = parse(&format!("{text}[animation]\nfps = 12\nloop = false\n")).expect("a scene");
-    assert_eq!((scene.layout, parse(TWO).expect("a scene").layout), (Layout::Automatic, Layout::Given));
+    assert_eq!(
+        (scene.layout, parse(TWO).expect("a scene").layout),
+        (Layout::Automatic, Layout::Given)
+    );
     let placed = scene.laid_out(&[vec![-3.0, 0.0], vec![5.0, 1.0]]);
     assert_eq!((placed.layout, &placed.poses[1].at), (Layout::Given, &vec![5.0, 1.0]));
-    assert_eq!((placed.animation.at(0.0), placed.animation.at(1.0)), (vec![-3.0, 0.0], vec![5.0, 1.0]));
+    assert_eq!(
+        (placed.animation.at(0.0), placed.animation.at(1.0)),
+        (vec![-3.0, 0.0], vec![5.0, 1.0])
+    );
     assert_eq!((placed.animation.fps, placed.animation.is_loop()), (12.0, false));
-    let keyed = parse(&format!("{text}[animation]\nkeys = [ {{ time = 0, at = [0.5, 0] }} ]\n")).expect("a scene");
-    assert_eq!(keyed.laid_out(&[vec![-3.0, 0.0], vec![5.0, 1.0]]).animation, keyed.animation);
+    let keyed = parse(&format!(
+        "{text}[animation]\nkeys = [ {{ time = 0, at = [0.5, 0] }} ]\n"
+    ))
+    .expect("a scene");
+    assert_eq!(
+        keyed.laid_out(&[vec![-3.0, 0.0], vec![5.0, 1.0]]).animation,
+        keyed.animation
+    );
 }
 
 #[test]
@@ -294,10 +306,18 @@ fn a_new_scene_reads_back() {
         [("a", "a.png"), ("say \"hi\"", "b c.png"), ("c", "c.svg")].map(|(name, source)| super::super::NewPose {
             name: name.to_owned(),
             source: source.to_owned(),
+            at: None,
         });
     let text = super::super::scene_text(&poses);
     let scene = parse(&text).expect("a scene");
     assert_eq!(scene.names(), ["a", "say \"hi\"", "c"]);
+    assert_eq!(scene.layout, Layout::Automatic);
+    let placed = poses.clone().map(|pose| super::super::NewPose {
+        at: Some([0.25, -(pose.source.len() as f64)]),
+        ..pose
+    });
+    let scene = parse(&super::super::scene_text(&placed)).expect("a scene");
+    assert_eq!((scene.layout, &scene.poses[1].at), (Layout::Given, &vec![0.25, -7.0]));
     // The commented landmark is valid once the comment signs go.
     let open = text
         .replace("# [[landmark]]\n# name", "[[landmark]]\nname")

@@ -53,8 +53,9 @@ impl Fitted {
                 let data_mean: Vec<f64> = (0..pose_count)
                     .map(|column| (0..count).map(|row| data.at(row, column)).sum::<f64>() / count as f64)
                     .collect();
-                let about_mean =
-                    DenseMatrix::from_fn(count, pose_count, |row, column| data.at(row, column) - data_mean[column]);
+                let about_mean = DenseMatrix::from_fn(count, pose_count, |row, column| {
+                    data.at(row, column) - data_mean[column]
+                });
                 let slopes = centred.least_squares(&about_mean, FLATNESS)?;
                 let left_over = about_mean.plus(-1.0, &centred.times(&slopes)?)?;
                 let system = DenseMatrix::from_fn(count, count, kernel);
@@ -115,6 +116,7 @@ impl Fitted {
 
     /// The weights at `L` places side by side: #dimensions coordinates in, #poses weights out. Every lane is computed as it
     /// would be alone.
+    #[inline(always)]
     pub(super) fn weights<const L: usize>(&self, at: &[[f64; L]], weights: &mut [[f64; L]]) {
         for (weight, at_mean) in weights.iter_mut().zip(&self.at_mean) {
             *weight = [*at_mean; L];
@@ -158,7 +160,9 @@ fn solved(system: &DenseMatrix, right: &DenseMatrix, examples: usize) -> Result<
     let blame = |part: &dyn Fn(usize) -> f64, condition: f64| {
         let largest = (0..examples).map(|row| part(row).abs()).fold(0.0, f64::max);
         WeightError::NearlySingular {
-            poses: (0..examples).filter(|&row| part(row).abs() >= TO_BLAME * largest).collect(),
+            poses: (0..examples)
+                .filter(|&row| part(row).abs() >= TO_BLAME * largest)
+                .collect(),
             condition,
         }
     };
@@ -181,6 +185,7 @@ fn solved(system: &DenseMatrix, right: &DenseMatrix, examples: usize) -> Result<
 
 impl Radial {
     /// The radial function at `t`, the distance over the radius.
+    #[inline(always)]
     fn at(self, t: f64) -> f64 {
         match self {
             // The cubic B-spline of SBE 3.3 as a sum of truncated powers: one formula for its three pieces.
