@@ -60,24 +60,39 @@ fn jittered(mesh: &tessellation::Tessellation, fixed: usize, seed: f64) -> tesse
 #[test]
 fn the_default_energy_converges_on_jittered_meshes_and_the_paper_s_does_not() {
     let poses = [[-0.4, -0.3], [0.4, -0.3], [0.4, 0.3], [-0.1, 0.15]].map(Point::from);
-    // How much the weights depend on the mesh: the largest difference between two jitters, at each fineness.
-    let dependence = |energy: Energy, refinement: u32| {
+    let weights = |energy: Energy, refinement: u32, seed: f64| -> Vec<Vec<f64>> {
         let mesh = tessellation::graded(&poses, &walls::Walls::default(), refinement).expect("no walls");
-        let [first, second] = [0.0, 0.4].map(|seed| solved(jittered(&mesh, poses.len(), seed), &poses, energy));
-        let (mut a, mut b) = (Vec::new(), Vec::new());
-        let mut worst = 0.0_f64;
-        for k in 0..200 {
-            let p = Point::new(0.7 * (f64::from(k) * 0.37).sin(), 0.7 * (f64::from(k) * 0.71).cos());
-            first.values(p, &mut a);
-            second.values(p, &mut b);
-            worst = a.iter().zip(&b).map(|(x, y)| (x - y).abs()).fold(worst, f64::max);
-        }
-        worst
+        let surface = solved(jittered(&mesh, poses.len(), seed), &poses, energy);
+        let at = |k: u32| {
+            let mut weights = Vec::new();
+            let (x, y) = ((f64::from(k) * 0.37).sin(), (f64::from(k) * 0.71).cos());
+            surface.values(Point::new(0.7 * x, 0.7 * y), &mut weights);
+            weights
+        };
+        (0..200).map(at).collect()
     };
-    let hessian = [0, 1].map(|refinement| dependence(Energy::Hessian, refinement));
-    let paper = [0, 1].map(|refinement| dependence(Energy::JacobianDifferences, refinement));
-    assert!(hessian[1] < 0.5 * hessian[0] && hessian[1] < 2e-3, "{hessian:?}");
-    assert!(paper[1] > 0.7 * paper[0] && paper[1] > 10.0 * hessian[1], "{paper:?}");
+    let apart = |a: &[Vec<f64>], b: &[Vec<f64>]| {
+        let pairs = a.iter().flatten().zip(b.iter().flatten());
+        pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
+    };
+    let coarse = weights(Energy::Hessian, 0, 0.0);
+    let fine = weights(Energy::Hessian, 1, 0.0);
+    // How much another jitter changes falls with the size of the triangles, and so does what a finer mesh changes.
+    let by_jitter = [
+        apart(&coarse, &weights(Energy::Hessian, 0, 0.4)),
+        apart(&fine, &weights(Energy::Hessian, 1, 0.4)),
+    ];
+    assert!(
+        by_jitter[1] < 0.5 * by_jitter[0] && by_jitter[1] < 1e-3,
+        "{by_jitter:?}"
+    );
+    assert!(apart(&coarse, &fine) < 5e-3, "{}", apart(&coarse, &fine));
+    // In the paper's sum gradients gain weight with every refinement.
+    let paper = apart(
+        &weights(Energy::JacobianDifferences, 0, 0.0),
+        &weights(Energy::JacobianDifferences, 1, 0.0),
+    );
+    assert!(paper > 0.05, "{paper}");
 }
 
 #[test]
@@ -196,7 +211,8 @@ fn walls_may_cross_and_bad_ones_are_refused_by_number() {
 
 #[test]
 fn edits_agree_with_a_new_build_and_leave_no_trace() {
-    for energy in [Energy::Hessian, Energy::JacobianDifferences] {
+    // The paper's energy depends on the mesh, whatever is done about it.
+    for (energy, tolerance) in [(Energy::Hessian, 0.015), (Energy::JacobianDifferences, 0.2)] {
         let options = BiharmonicOptions {
             energy,
             extent: Some([[0.0, 0.0], [1.0, 0.9]]),
@@ -209,17 +225,17 @@ fn edits_agree_with_a_new_build_and_leave_no_trace() {
         assert_eq!(edited.move_pose(4, &layout[4]), Ok(Edit::Solved));
         assert_cardinal(&edited, 1e-9);
         let fresh = difference(&edited, &with(&layout, &options));
-        assert!(fresh < 0.03, "{fresh}");
+        assert!(fresh < tolerance, "{fresh}");
         layout.push([0.75, 0.55]);
         assert_eq!(edited.insert_pose(&layout[6]), Ok(Edit::Solved));
         assert_cardinal(&edited, 1e-9);
         let fresh = difference(&edited, &with(&layout, &options));
-        assert!(fresh < 0.03, "{fresh}");
+        assert!(fresh < tolerance, "{fresh}");
         layout.remove(1);
         assert_eq!(edited.remove_pose(1), Ok(Edit::Solved));
         assert_cardinal(&edited, 1e-9);
         let fresh = difference(&edited, &with(&layout, &options));
-        assert!(fresh < 0.03, "{fresh}");
+        assert!(fresh < tolerance, "{fresh}");
         // Back to where it began, pose by pose; the removed one comes back last.
         edited.remove_pose(5).expect("a pose");
         edited.move_pose(3, &SIX[4]).expect("a place");
