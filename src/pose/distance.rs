@@ -46,12 +46,10 @@ pub fn deformation_distances(poses: &PoseSet) -> Vec<Vec<f64>> {
     let count = poses.len();
     let order = walk(poses.topology());
     let mut distances = vec![vec![0.0; count]; count];
-    for a in 0..count {
-        for b in 0..a {
-            let distance = between(poses, &order, a, b);
-            distances[a][b] = distance;
-            distances[b][a] = distance;
-        }
+    for (a, b) in (0..count).flat_map(|a| (0..a).map(move |b| (a, b))) {
+        let distance = between(poses, &order, a, b);
+        distances[a][b] = distance;
+        distances[b][a] = distance;
     }
     distances
 }

@@ -136,8 +136,9 @@ fn eigenvectors(matrix: &mut [Vec<f64>]) -> Vec<Vec<f64>> {
                 for row in matrix.iter_mut().chain(vectors.iter_mut()) {
                     (row[p], row[q]) = rotate(row[p], row[q]);
                 }
-                for k in 0..count {
-                    (matrix[p][k], matrix[q][k]) = rotate(matrix[p][k], matrix[q][k]);
+                let (upper, lower) = matrix.split_at_mut(q);
+                for (x, y) in upper[p].iter_mut().zip(&mut lower[0]) {
+                    (*x, *y) = rotate(*x, *y);
                 }
             }
         }
@@ -180,7 +181,7 @@ fn majorise(places: &mut Vec<Point>, wanted: &[Vec<f64>]) {
 }
 
 /// Moves places that are nearer than they may be, away from one another; equal ones across the line from the centre.
-fn push_apart(places: &mut Vec<Point>) {
+fn push_apart(places: &mut [Point]) {
     let count = places.len();
     // A little more, for the rounding to the step.
     let apart = APART.min(3.0 / count as f64) + 2.0 * STEP;

@@ -110,8 +110,8 @@ pub(super) fn settle(
             let (before, lag) = (&mut admissible[here.clone()], &mut disagreement[here]);
             for k in 0..count {
                 lag[k] += RELAXATION * found[k] + (1.0 - RELAXATION) * before[k];
-                row[k] = lag[k];
             }
+            row.copy_from_slice(lag);
             project(&mut row);
             for k in 0..count {
                 changed += penalty * (row[k] - before[k]) * (row[k] - before[k]);

@@ -43,7 +43,7 @@ pub(super) fn energy(mesh: &Tessellation, sizes: &[f64], gradient_weights: &[f64
                 let to = 3 * triangle[row / 3] + row % 3;
                 let from = 3 * triangle[column / 3] + column % 3;
                 if to >= from {
-                    let scale = |vertex: usize, k: usize| if k % 3 == 0 { 1.0 } else { sizes[vertex] };
+                    let scale = |vertex: usize, k: usize| if k.is_multiple_of(3) { 1.0 } else { sizes[vertex] };
                     let value = form.bend[row][column] + gradient_weight * form.slope[row][column];
                     let unit = scale(triangle[row / 3], row) * scale(triangle[column / 3], column);
                     entries.push((to, from, value / unit));

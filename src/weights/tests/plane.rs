@@ -292,7 +292,7 @@ fn bounded_weights_are_within_bounds_cardinal_and_smooth() {
         range: Range::Unit,
         ..BiharmonicOptions::default()
     };
-    for layout in [&LAYOUTS[2][..], &SIX] {
+    for layout in [LAYOUTS[2], &SIX] {
         let bounded = with(layout, &options);
         let report = bounded.bounded_report().expect("it was searched for");
         assert!(report.converged, "{report:?}");
