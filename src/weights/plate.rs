@@ -20,8 +20,6 @@
 
 use std::borrow::Borrow;
 
-use rayon::prelude::*;
-
 use super::WeightError;
 use super::elements::{Entry, Form};
 use crate::math::vectorised;
@@ -162,15 +160,14 @@ impl Plate {
 
     /// For every form `m` the solution of `K f = m` with 0 at the pins.
     fn solved(&self, forms: &[Form]) -> Result<Vec<Vec<f64>>, WeightError> {
-        // Columns have nothing to do with one another: the same however many threads share them.
-        let solved: Result<Vec<_>, _> = forms
-            .par_chunks(LANES)
-            .map(|together| match together.len() {
-                1 => self.solve_lanes::<1>(together),
-                _ => self.solve_lanes::<LANES>(together),
-            })
-            .collect();
-        Ok(solved?.into_iter().flatten().collect())
+        let mut shapes = Vec::with_capacity(forms.len());
+        for together in forms.chunks(LANES) {
+            shapes.extend(match together.len() {
+                1 => self.solve_lanes::<1>(together)?,
+                _ => self.solve_lanes::<LANES>(together)?,
+            });
+        }
+        Ok(shapes)
     }
 
     fn solve_lanes<const K: usize>(&self, forms: &[Form]) -> Result<Vec<Vec<f64>>, WeightError> {

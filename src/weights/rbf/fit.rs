@@ -152,7 +152,10 @@ impl Fitted {
 /// The solution of a system whose first `examples` unknowns belong to examples, and its condition number.
 fn solved(system: &DenseMatrix, right: &DenseMatrix, examples: usize) -> Result<(DenseMatrix, f64), WeightError> {
     let (size, columns) = (right.row_count(), right.column_count());
-    // The inverse, for its norm, beside the solution. These systems are small.
+    // The inverse, for its norm, beside the solution: where data are those of poses alone, the inverse is the solution. These
+    // systems are small.
+    let is_unit = |row: usize| (0..columns).all(|column| right.at(row, column) == f64::from(u8::from(row == column)));
+    let columns = if (0..size).all(is_unit) { 0 } else { columns };
     let both = DenseMatrix::from_fn(size, columns + size, |row, column| match column.checked_sub(columns) {
         None => right.at(row, column),
         Some(k) => f64::from(u8::from(row == k)),
