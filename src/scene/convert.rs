@@ -266,7 +266,11 @@ impl Reader<'_> {
         if provider == Provider::Rbf {
             let remedy = "remove it, or set `provider = \"biharmonic\"`";
             if let Some(bounded) = bounded {
-                self.unsupported::<()>(bounded.span().start, "`bounded = true` with `provider = \"rbf\"`", remedy)?;
+                self.unsupported::<()>(
+                    bounded.span().start,
+                    "`bounded = true` with `provider = \"rbf\"`",
+                    remedy,
+                )?;
             }
             if let Some(walls) = walls {
                 self.unsupported::<()>(walls.span().start, "`walls` with `provider = \"rbf\"`", remedy)?;
@@ -315,7 +319,11 @@ impl Reader<'_> {
                     )),
                 ));
             }
-            points.iter().enumerate().map(|(index, p)| point(wall, index, p)).collect()
+            points
+                .iter()
+                .enumerate()
+                .map(|(index, p)| point(wall, index, p))
+                .collect()
         };
         walls.get_ref().iter().enumerate().map(wall).collect()
     }
