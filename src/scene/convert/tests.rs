@@ -313,11 +313,11 @@ fn a_new_scene_reads_back() {
     assert_eq!(scene.names(), ["a", "say \"hi\"", "c"]);
     assert_eq!(scene.layout, Layout::Automatic);
     let placed = poses.clone().map(|pose| super::super::NewPose {
-        at: Some([0.25, -(pose.source.len() as f64)]),
+        at: Some([0.25, -f64::from(pose.source.as_bytes()[0])]),
         ..pose
     });
     let scene = parse(&super::super::scene_text(&placed)).expect("a scene");
-    assert_eq!((scene.layout, &scene.poses[1].at), (Layout::Given, &vec![0.25, -7.0]));
+    assert_eq!((scene.layout, &scene.poses[1].at), (Layout::Given, &vec![0.25, -98.0]));
     // The commented landmark is valid once the comment signs go.
     let open = text
         .replace("# [[landmark]]\n# name", "[[landmark]]\nname")
