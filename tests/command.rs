@@ -168,6 +168,16 @@ fn a_new_scene_renders() {
     let workshop = two();
     workshop.succeeds(&["new", "cat", "tall.png", "wide.png"]);
     assert!(workshop.path("cat/tall.png").is_file());
+    // Two poses are as far apart as two can be.
+    let text = std::fs::read_to_string(workshop.path("cat/scene.toml")).expect("a scene");
+    assert!(
+        text.contains("at = [-1.0, 0.0]") && text.contains("at = [1.0, 0.0]"),
+        "{text}"
+    );
+    // A scene without places lays itself out in the same way.
+    std::fs::write(workshop.path("cat/free.toml"), text.replace("\nat = ", "\n# at = ")).expect("written");
+    let weights = |file: &str| workshop.succeeds(&["weights", file, "--at", "0.3,0.2"]);
+    assert_eq!(weights("cat/free.toml"), weights("cat/scene.toml"));
     workshop.succeeds(&[
         "render",
         "cat/scene.toml",
@@ -190,6 +200,52 @@ fn a_new_scene_renders() {
     std::fs::copy(workshop.path("tall.png"), workshop.path("bird/sit.png")).expect("copied");
     workshop.succeeds(&["new", "bird", "bird/sit.png"]);
     assert_eq!(std::fs::read_dir(workshop.path("bird")).expect("a folder").count(), 2);
+}
+
+#[test]
+fn drawings_that_do_not_fit_one_another_still_make_a_scene() {
+    let workshop = two();
+    // A ring has a hole, the others have none.
+    workshop.picture("ring.png", |x, y| {
+        let away = (i64::from(x) - 20).abs().max((i64::from(y) - 20).abs());
+        [0, 0, 0, if (6..15).contains(&away) { 255 } else { 0 }]
+    });
+    let output = workshop.run(&["new", "cat", "tall.png", "wide.png", "ring.png"]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        output.status.success() && message.contains("evenly on a circle") && message.contains("holes"),
+        "{message}"
+    );
+    let text = std::fs::read_to_string(workshop.path("cat/scene.toml")).expect("a scene");
+    assert!(
+        text.contains("at = [-1.0, 0.0]") && text.contains("at = [0.5, 0.866]"),
+        "{text}"
+    );
+}
+
+#[test]
+fn walls_and_bounds_of_a_scene_are_kept() {
+    let workshop = Workshop::new();
+    let walled = "[pose_space]\nbounded = true\nwalls = [[[0.5, -9.0], [0.5, 0.5]]]\n";
+    workshop.two_poses("[0, 0]", "[1, 0]", walled);
+    let text = workshop.succeeds(&["weights", "scene.toml", "--at", "0.49,-0.5", "--at", "0.51,-0.5"]);
+    let first: Vec<f64> = text
+        .lines()
+        .map(|line| {
+            let line: serde_json::Value = serde_json::from_str(line).expect("JSON");
+            line["weights"][0].as_f64().expect("a number")
+        })
+        .collect();
+    assert!(
+        first[0] > 0.7 && first[0] <= 1.0 && first[1] < 0.3 && first[1] >= 0.0,
+        "{first:?}"
+    );
+    workshop.two_poses("[0, 0]", "[0.5, 0]", walled);
+    let message = workshop.fails(&["weights", "scene.toml", "--at", "0,0"], 1);
+    assert!(
+        message.contains("wall 0 touches pose 'wide'") && message.contains("move the wall"),
+        "{message}"
+    );
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use inbetween::export::png_bytes;
-use inbetween::pipeline::{Character, checked_weights};
+use inbetween::pipeline::{Character, checked_weights, laid_out};
 use inbetween::scene::Scene;
 
 use super::output::Output;
@@ -59,6 +59,8 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         super::weights::check_place(place, &scene)?;
     }
     let output = Output::open(&arguments.output)?;
+    let file = scene.file.display().to_string();
+    let scene = laid_out(scene).context(file)?;
     let size = arguments
         .size
         .map_or(scene.animation.size.map(|side| side as usize), |grid| grid.0);

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use inbetween::export::PendingFile;
-use inbetween::scene::{NewPose, scene_text};
+use inbetween::pipeline::{PipelineError, laid_out};
+use inbetween::scene::{NewPose, Scene, scene_text};
+use inbetween::weights::arrange;
 
 use super::{Failure, Verbosity};
 
@@ -13,8 +15,10 @@ const SUFFIXES: [&str; 7] = ["png", "jpg", "jpeg", "webp", "gif", "bmp", "svg"];
 
 /// Write a scene file for some drawings
 ///
-/// Writes DIR/scene.toml with one pose a drawing, named after its file and laid out evenly on a circle. Drawings that
-/// are not in DIR are copied into it, so that the folder is complete. An existing scene file is never overwritten.
+/// Writes DIR/scene.toml with one pose a drawing, named after its file. The drawings are mapped onto one another to lay the poses
+/// out: those that are alike come near one another. If they cannot be mapped, the poses lie evenly on a circle and
+/// a note says why. Drawings that are not in DIR are copied into it, so that the folder is complete. An existing scene
+/// file is never overwritten.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  inbetween new cat stand.png run.png jump.png\n  inbetween render cat/scene.toml -o cat.gif"
@@ -44,10 +48,10 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         )
         .into());
     }
-    let (poses, copies) = plan(arguments)?;
+    let (mut poses, copies) = plan(arguments)?;
     std::fs::create_dir_all(&arguments.dir)
         .with_context(|| format!("cannot make the folder {}", arguments.dir.display()))?;
-    let written = write(&copies, &scene_file, &scene_text(&poses));
+    let written = write(&copies, &scene_file, &mut poses, verbosity);
     if written.is_err() {
         for copy in &copies {
             let _ = std::fs::remove_file(&copy.target);
@@ -122,16 +126,38 @@ fn plan(arguments: &Arguments) -> anyhow::Result<(Vec<NewPose>, Vec<Copy>)> {
             name = format!("{stem}-{number}");
             number += 1;
         }
-        poses.push(NewPose { name, source });
+        poses.push(NewPose { name, source, at: None });
     }
     Ok((poses, copies))
 }
 
-fn write(copies: &[Copy], scene_file: &Path, text: &str) -> anyhow::Result<()> {
+fn write(copies: &[Copy], scene_file: &Path, poses: &mut [NewPose], verbosity: Verbosity) -> anyhow::Result<()> {
     for copy in copies {
         PendingFile::write_whole(&copy.target, &copy.bytes)?;
     }
-    Ok(PendingFile::write_whole(scene_file, text.as_bytes())?)
+    let places = places(scene_file, poses).unwrap_or_else(|error| {
+        verbosity.note(&format!(
+            "note: the poses are laid out evenly on a circle, because the drawings could not be mapped: {error}"
+        ));
+        even_circle(poses.len())
+    });
+    for (pose, place) in poses.iter_mut().zip(places) {
+        pose.at = Some(place);
+    }
+    Ok(PendingFile::write_whole(scene_file, scene_text(poses).as_bytes())?)
+}
+
+/// Places by how far the drawings are from one another.
+fn places(scene_file: &Path, poses: &[NewPose]) -> Result<Vec<[f64; 2]>, PipelineError> {
+    let scene = laid_out(Scene::parse(&scene_text(poses), scene_file)?)?;
+    Ok(scene.poses.iter().map(|pose| [pose.at[0], pose.at[1]]).collect())
+}
+
+/// Places in order around a circle: as if each drawing were one step from the next, and the last from the first.
+fn even_circle(count: usize) -> Vec<[f64; 2]> {
+    let steps = |a: usize, b: usize| a.abs_diff(b).min(count - a.abs_diff(b)) as f64;
+    let distances: Vec<Vec<f64>> = (0..count).map(|a| (0..count).map(|b| steps(a, b)).collect()).collect();
+    arrange(&distances)
 }
 
 fn file_name(path: &Path) -> anyhow::Result<String> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use inbetween::export::{ApngWriter, Backdrop, GifWriter, Palette, PendingFile, Repetition, Sequence};
-use inbetween::pipeline::Character;
+use inbetween::pipeline::{Character, laid_out};
 use inbetween::scene::{Animation, Background, Scene};
 use rayon::prelude::*;
 
@@ -66,6 +66,8 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         ));
     }
     let scene = Scene::open(&arguments.scene)?;
+    let file = scene.file.display().to_string();
+    let scene = laid_out(scene).context(file)?;
     let mut animation = scene.animation.clone();
     if let Some(fps) = arguments.fps {
         animation.fps = fps;

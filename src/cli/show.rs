@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use inbetween::export::png_bytes;
-use inbetween::pipeline::{map_drawings, read_drawings, weight_provider};
+use inbetween::pipeline::{laid_out, map_drawings, read_drawings, weight_provider};
 use inbetween::render::diagram::{self, Diagram, DiagramPose, Sections};
 use inbetween::scene::Scene;
 
@@ -29,6 +29,8 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
     let scene = Scene::open(&arguments.scene)?;
     let output = Output::open(&arguments.output)?;
+    let file = scene.file.display().to_string();
+    let scene = laid_out(scene).context(file)?;
     let in_scene = || scene.file.display().to_string();
     let provider = weight_provider(&scene, None).with_context(in_scene)?;
     let drawings = read_drawings(&scene).with_context(in_scene)?;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use anyhow::{Context as _, anyhow};
-use inbetween::pipeline::weight_provider;
+use inbetween::pipeline::{laid_out, weight_provider};
 use inbetween::scene::{Provider, Scene};
 use inbetween::texture::texture_weights;
 use serde::Serialize;
@@ -15,7 +15,7 @@ use super::values::{Grid, Numbers};
 
 /// Print the weights of a scene's poses at places of the pose space
 ///
-/// Only the layout is used, no drawing is opened. With --at one JSON object a line:
+/// Only the layout is used; drawings are opened only if the scene gives no places, to lay them out. With --at one JSON object a line:
 /// {"weights": [...], "texture_weights": [...]}. With --grid rows of x,y,w0,w1,... over the box of the poses, widened
 /// by half its diagonal on every side.
 #[derive(clap::Args)]
@@ -63,6 +63,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         _ => None,
     };
     let output = Output::open(&arguments.output)?;
+    let file = scene.file.display().to_string();
+    let scene = laid_out(scene).context(file)?;
     let in_scene = || scene.file.display().to_string();
     let provider = weight_provider(&scene, provider).with_context(in_scene)?;
     let mut text = String::new();

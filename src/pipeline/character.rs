@@ -1,13 +1,13 @@
 //! A character ready to be shown in any pose.
 
 use super::drawings::{read_drawings, sharpen};
-use super::{PipelineError, map_drawings, weight_provider, weighting};
+use super::{PipelineError, automatic_places, map_drawings, weight_provider, weighting};
 use crate::blend::{self, BlendOptions, BlendReport, RigidBlend};
 use crate::input::Drawing;
 use crate::math::Point;
 use crate::pose::Mapping;
 use crate::render::{Camera, Frame, Painter, PoseTexture, Silhouette, Texture};
-use crate::scene::{Anchor, Animation, Background, Scene};
+use crate::scene::{Anchor, Animation, Background, Layout, Scene};
 use crate::texture::texture_weights;
 use crate::weights::WeightProvider;
 
@@ -29,15 +29,27 @@ pub struct Character {
 impl Character {
     /// Reads, maps and prepares the character of `scene`, for frames of `size` (columns, rows).
     ///
-    /// The camera is fixed: it shows all poses and the whole animation.
+    /// The camera is fixed: it shows all poses and the whole animation. A scene without places is laid out first; whoever
+    /// wants to know its places, or its animation's, lays it out with [`laid_out`](super::laid_out) and gives that.
     ///
     /// # Errors
     /// [`PipelineError`] from any stage.
     pub fn new(scene: &Scene, size: [usize; 2]) -> Result<Self, PipelineError> {
         // The cheap refusals first.
-        let weights = weight_provider(scene, None)?;
+        let mut weights = match scene.layout {
+            Layout::Given => Some(weight_provider(scene, None)?),
+            Layout::Automatic => None,
+        };
         let mut drawings = read_drawings(scene)?;
         let (mapping, report) = map_drawings(scene, &drawings)?;
+        let scene = &match scene.layout {
+            Layout::Given => scene.clone(),
+            Layout::Automatic => scene.laid_out(&automatic_places(&mapping)),
+        };
+        let weights = match weights.take() {
+            Some(weights) => weights,
+            None => weight_provider(scene, None)?,
+        };
         let mut notes = report.notes;
         let blend = RigidBlend::new(&mapping.poses, &blend_options(scene, &mapping))?;
         if blend.turns_are_ambiguous() {

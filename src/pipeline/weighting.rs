@@ -1,45 +1,66 @@
 //! The weights a scene asks for.
 
 use super::PipelineError;
-use crate::scene::{Provider, Radial, Scene};
-use crate::weights::{self, BiharmonicOptions, BiharmonicWeights, RbfOptions, RbfWeights, WeightError, WeightProvider};
+use crate::scene::{Provider, Radial, Scene, WeightRange};
+use crate::weights::{
+    self, BiharmonicOptions, BiharmonicWeights, PseudoPose, Range, RbfOptions, RbfWeights, WeightError, WeightProvider,
+};
 
 /// How far the sum of given weights may be from 1.
 const SUM_TOLERANCE: f64 = 1e-6;
 
-/// The weight provider of a scene; `provider` overrides the scene's own choice.
+/// The weight provider of a scene that is [laid out](super::laid_out); `provider` overrides the scene's own choice.
 ///
 /// # Errors
-/// [`PipelineError::Weights`], naming poses, if the layout allows no weights.
+/// [`PipelineError::Stage`], naming poses, if the layout allows no weights, or if the scene asks for what only the other
+/// provider has.
 pub fn weight_provider(scene: &Scene, provider: Option<Provider>) -> Result<Box<dyn WeightProvider>, PipelineError> {
     let places: Vec<Vec<f64>> = scene.poses.iter().map(|pose| pose.at.clone()).collect();
+    let pseudo_poses: Vec<PseudoPose> = scene
+        .pseudo_poses
+        .iter()
+        .map(|pseudo| PseudoPose {
+            from: pseudo.from.clone(),
+            at: pseudo.at.clone(),
+        })
+        .collect();
+    let refusal = |message: String| PipelineError::stage(&[], None, format!("pose space: {message}"));
+    let settings = &scene.pose_space;
     let built: Result<Box<dyn WeightProvider>, WeightError> = match provider.unwrap_or(scene.pose_space.provider) {
         Provider::Biharmonic => {
             let options = BiharmonicOptions {
-                epsilon: scene.pose_space.epsilon,
+                epsilon: settings.epsilon,
+                range: match settings.range {
+                    WeightRange::Free => Range::Free,
+                    WeightRange::Unit => Range::Unit,
+                },
+                walls: settings.walls.clone(),
+                pseudo_poses,
                 ..BiharmonicOptions::default()
             };
             BiharmonicWeights::new(&places, &options).map(|w| Box::new(w) as _)
         }
         Provider::Rbf => {
+            if !settings.walls.is_empty() || settings.range != WeightRange::Free {
+                return Err(refusal(
+                    "radial weights know no walls and no bounds; remove them, or take biharmonic weights".to_owned(),
+                ));
+            }
             let options = RbfOptions {
                 radial: match scene.pose_space.radial {
                     Radial::BSpline => weights::Radial::BSpline,
                     Radial::ThinPlate => weights::Radial::ThinPlate,
                 },
-                pseudo_poses: scene
-                    .pseudo_poses
-                    .iter()
-                    .map(|pseudo| weights::PseudoPose {
-                        from: pseudo.from.clone(),
-                        at: pseudo.at.clone(),
-                    })
-                    .collect(),
+                pseudo_poses,
             };
             RbfWeights::new(&places, &options).map(|w| Box::new(w) as _)
         }
     };
-    built.map_err(PipelineError::Weights)
+    let name = |pose: usize| match scene.poses.get(pose) {
+        Some(pose) => format!("'{}'", pose.name),
+        None => format!("pseudo-pose {}", pose - scene.poses.len()),
+    };
+    built.map_err(|error| refusal(error.naming(name)))
 }
 
 /// Weights given by hand, made to sum to exactly 1.

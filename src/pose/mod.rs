@@ -1,6 +1,7 @@
 //! One topology with N embeddings, and the mapping that the pipeline makes of N drawings.
 
 mod carried;
+mod distance;
 mod handles;
 mod json;
 mod landmark;
@@ -9,6 +10,7 @@ mod pose_set;
 mod quality;
 
 pub use carried::{CarriedOutline, CarryError};
+pub use distance::deformation_distances;
 pub use handles::{DragOptions, DragReport, HandleDeformation, HandleError, HandleScratch, Repair};
 pub use json::{MappingFileError, Polygons};
 pub use landmark::{LandmarkKind, PlacedLandmark};

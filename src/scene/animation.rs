@@ -28,6 +28,16 @@ pub struct Animation {
     /// What is behind the character.
     pub background: Background,
     path: Path,
+    route: Route,
+}
+
+/// Where the keys come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Route {
+    /// From the scene file.
+    Keys,
+    /// From the places of the poses; whether as a loop.
+    Poses { looped: bool },
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -74,6 +84,7 @@ impl Animation {
             size: Self::DEFAULT_SIZE,
             background: Background::Transparent,
             path: Path { keys, period, tangents },
+            route: Route::Keys,
         }
     }
 
@@ -88,7 +99,25 @@ impl Animation {
                 at: at.to_vec(),
             })
             .collect();
-        Self::new(keys, looped)
+        Self {
+            route: Route::Poses { looped },
+            ..Self::new(keys, looped)
+        }
+    }
+
+    /// The same with the poses at other places: as it is with keys of its own.
+    #[must_use]
+    pub(super) fn through<'a>(&self, places: impl IntoIterator<Item = &'a [f64]>) -> Self {
+        let moved = match self.route {
+            Route::Keys => return self.clone(),
+            Route::Poses { looped } => Self::visiting(places, looped),
+        };
+        Self {
+            fps: self.fps,
+            size: self.size,
+            background: self.background,
+            ..moved
+        }
     }
 
     /// The keys, in order of time. The last key of a loop that repeats its first is not among them.

@@ -12,7 +12,9 @@ use toml::Spanned;
 
 use super::error::{SceneError, SceneProblem};
 use super::file::SceneFile;
-use super::settings::{Holes, InputSettings, MeshSettings, PoseSpaceSettings, Provider, PseudoPose, Radial, Scene};
+use super::settings::{
+    Holes, InputSettings, Layout, MeshSettings, PoseSpaceSettings, Provider, PseudoPose, Radial, Scene, WeightRange,
+};
 
 /// The version of the format.
 const VERSION: i64 = 1;
@@ -107,15 +109,10 @@ impl Reader<'_> {
         let input = self.input(&written)?;
         let pose_space = self.pose_space(&written)?;
         let dimension = poses.first().map_or(0, |p| p.at.len());
+        // All poses have a place or none.
+        let is_placed = written.pose.iter().all(|pose| pose.get_ref().at.is_some());
         let mut pseudo_poses = Vec::new();
         for pseudo in &written.pseudo_pose {
-            if pose_space.provider != Provider::Rbf {
-                self.unsupported::<()>(
-                    pseudo.span().start,
-                    "[[pseudo_pose]] with biharmonic weights",
-                    "set `provider = \"rbf\"` under [pose_space]",
-                )?;
-            }
             let table = pseudo.get_ref();
             pseudo_poses.push(PseudoPose {
                 from: self.place(&table.from, "`from` of a [[pseudo_pose]]", Some(dimension))?,
@@ -142,6 +139,7 @@ impl Reader<'_> {
                     "between 0.002 and 1, a fraction of the diagonal",
                 )?,
             },
+            layout: if is_placed { Layout::Given } else { Layout::Automatic },
             pose_space,
             blend: self.blend(&written, &names, &landmarks)?,
             texture_sharpness: self.number(
@@ -259,19 +257,29 @@ impl Reader<'_> {
 
     fn pose_space(&self, written: &SceneFile) -> Checked<PoseSpaceSettings> {
         let table = &written.pose_space;
-        if let Some(bounded) = table.bounded.as_ref().filter(|b| *b.get_ref()) {
-            self.unsupported::<()>(bounded.span().start, "`bounded = true`", "remove it")?;
-        }
-        if let Some(walls) = table.walls.as_ref().filter(|w| !w.get_ref().is_empty()) {
-            self.unsupported::<()>(walls.span().start, "`walls`", "remove them")?;
+        let provider = self.choice(
+            &table.provider,
+            "[pose_space] provider",
+            &[("biharmonic", Provider::Biharmonic), ("rbf", Provider::Rbf)],
+            "'biharmonic' or 'rbf'",
+        )?;
+        let bounded = table.bounded.as_ref().filter(|bounded| *bounded.get_ref());
+        let walls = table.walls.as_ref().filter(|walls| !walls.get_ref().is_empty());
+        if provider == Provider::Rbf {
+            let remedy = "remove it, or set `provider = \"biharmonic\"`";
+            if let Some(bounded) = bounded {
+                self.unsupported::<()>(
+                    bounded.span().start,
+                    "`bounded = true` with `provider = \"rbf\"`",
+                    remedy,
+                )?;
+            }
+            if let Some(walls) = walls {
+                self.unsupported::<()>(walls.span().start, "`walls` with `provider = \"rbf\"`", remedy)?;
+            }
         }
         Ok(PoseSpaceSettings {
-            provider: self.choice(
-                &table.provider,
-                "[pose_space] provider",
-                &[("biharmonic", Provider::Biharmonic), ("rbf", Provider::Rbf)],
-                "'biharmonic' or 'rbf'",
-            )?,
+            provider,
             radial: self.choice(
                 &table.radial,
                 "[pose_space] radial",
@@ -285,7 +293,41 @@ impl Reader<'_> {
                 |v| (0.0..=1e6).contains(&v),
                 "between 0 and a million",
             )?,
+            range: match bounded {
+                Some(_) => WeightRange::Unit,
+                None => WeightRange::Free,
+            },
+            walls: match walls {
+                Some(walls) => self.walls(walls)?,
+                None => Vec::new(),
+            },
         })
+    }
+
+    fn walls(&self, walls: &Spanned<Vec<Vec<Vec<f64>>>>) -> Checked<Vec<Vec<[f64; 2]>>> {
+        let at = walls.span();
+        let point = |wall: usize, index: usize, point: &Vec<f64>| {
+            let key = format!("point {index} of wall {wall}");
+            let place = self.place(&Spanned::new(at.clone(), point.clone()), &key, Some(2))?;
+            Ok([place[0], place[1]])
+        };
+        let wall = |(wall, points): (usize, &Vec<Vec<f64>>)| {
+            if points.len() < 2 {
+                return Err(self.fail(
+                    at.start,
+                    SceneProblem::Format(format!(
+                        "wall {wall} has {} points, but must have two or more: [ [x, y], [x, y], ... ]",
+                        points.len()
+                    )),
+                ));
+            }
+            points
+                .iter()
+                .enumerate()
+                .map(|(index, p)| point(wall, index, p))
+                .collect()
+        };
+        walls.get_ref().iter().enumerate().map(wall).collect()
     }
 }
 

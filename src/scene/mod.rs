@@ -18,7 +18,7 @@ pub use animation::{Animation, Key};
 pub use error::{SceneError, SceneProblem};
 pub use new::{NewPose, scene_text};
 pub use settings::{
-    Anchor, Background, BlendSettings, DeformedCopy, DrawnSource, Facing, HandleMove, Holes, InputSettings,
+    Anchor, Background, BlendSettings, DeformedCopy, DrawnSource, Facing, HandleMove, Holes, InputSettings, Layout,
     MeshSettings, PoseSource, PoseSpaceSettings, Provider, PseudoPose, Radial, Region, Scene, SceneLandmark, ScenePath,
-    ScenePose, SoftAnchor,
+    ScenePose, SoftAnchor, WeightRange,
 };

@@ -3,31 +3,37 @@
 use std::fmt::Write as _;
 
 /// A drawing for a new scene.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct NewPose {
     /// Its name.
     pub name: String,
     /// Its source, relative to the scene file.
     pub source: String,
+    /// Its place in the pose space; all poses of a scene have one, or none.
+    pub at: Option<[f64; 2]>,
 }
 
-/// A scene file for `poses`, laid out automatically, with the keys an artist is likely to want next as comments.
+/// A scene file for `poses`, with the keys an artist is likely to want next as comments.
 #[must_use]
 pub fn scene_text(poses: &[NewPose]) -> String {
     let mut text = String::from(
         "version = 1\n\
-         # Poses without `at` are laid out evenly on a circle. Give all of them a place to lay them out yourself:\n\
-         # related poses near one another, x and y meaning whatever suits the character.\n",
+         # `at` is a pose's place: poses that are alike lie near one another. Move them as you like, x and y meaning whatever\n\
+         # suits the character. Without any `at` the poses are laid out anew, from the drawings, whenever they are used.\n",
     );
     for pose in poses {
         // A TOML value knows its own quoting.
         let quoted = |s: &str| toml::Value::String(s.to_owned()).to_string();
         let _ = write!(
             text,
-            "\n[[pose]]\nname = {}\nsource = {}\n# at = [0.0, 0.0]\n",
+            "\n[[pose]]\nname = {}\nsource = {}\n",
             quoted(&pose.name),
             quoted(&pose.source)
         );
+        text.push_str(&match pose.at {
+            Some([x, y]) => format!("at = [{x:?}, {y:?}]\n"),
+            None => "# at = [0.0, 0.0]\n".to_owned(),
+        });
     }
     text.push_str(
         "\n# A point that corresponds, where the automatic match errs: source pixels or SVG units, a pose may lack it.\n\

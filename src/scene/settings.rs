@@ -8,7 +8,8 @@ use crate::math::Point;
 
 /// A scene: everything the artist says about a character.
 ///
-/// Every pose has a place of the same dimension, no two at the same; pose indices are in range; numbers are finite.
+/// Every pose has a place of the same dimension, no two at the same; pose indices are in range; numbers are finite. Places
+/// that the file does not give are an even circle until the drawings are mapped, see [`Layout`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// The scene file.
@@ -19,6 +20,8 @@ pub struct Scene {
     pub input: InputSettings,
     /// How fine the mesh is.
     pub mesh: MeshSettings,
+    /// Whether the poses are where the file says.
+    pub layout: Layout,
     /// How weights fall off over the pose space.
     pub pose_space: PoseSpaceSettings,
     /// How shapes are blended.
@@ -105,8 +108,29 @@ pub enum Radial {
     ThinPlate,
 }
 
+/// Where the places of the poses come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Layout {
+    /// From the scene file.
+    #[default]
+    Given,
+    /// From how far the drawings are from one another. That is known when they are mapped; [`Scene::laid_out`] then takes
+    /// the places. Until then they are even on a circle.
+    Automatic,
+}
+
+/// What values weights may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum WeightRange {
+    /// Any.
+    #[default]
+    Free,
+    /// From 0 to 1.
+    Unit,
+}
+
 /// How weights fall off over the pose space.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PoseSpaceSettings {
     /// Which weights.
     pub provider: Provider,
@@ -114,15 +138,21 @@ pub struct PoseSpaceSettings {
     pub radial: Radial,
     /// The weight of the squared gradient in [`Provider::Biharmonic`].
     pub epsilon: f64,
+    /// What values the weights of [`Provider::Biharmonic`] may have.
+    pub range: WeightRange,
+    /// Polylines that influence may not cross in [`Provider::Biharmonic`].
+    pub walls: Vec<Vec<[f64; 2]>>,
 }
 
 impl Default for PoseSpaceSettings {
-    /// Biharmonic with epsilon 1e-3.
+    /// Biharmonic with epsilon 1e-3, without bounds or walls.
     fn default() -> Self {
         Self {
             provider: Provider::default(),
             radial: Radial::default(),
             epsilon: 1e-3,
+            range: WeightRange::default(),
+            walls: Vec::new(),
         }
     }
 }
@@ -289,6 +319,21 @@ impl Scene {
     #[must_use]
     pub fn dimension(&self) -> usize {
         self.poses.first().map_or(0, |pose| pose.at.len())
+    }
+
+    /// The scene with its poses at `places`, one of the pose space's dimension for each; the animation goes through them if it
+    /// has no keys of its own.
+    #[must_use]
+    pub fn laid_out(&self, places: &[Vec<f64>]) -> Self {
+        let mut scene = self.clone();
+        for (pose, place) in scene.poses.iter_mut().zip(places) {
+            pose.at.clone_from(place);
+        }
+        scene.animation = self
+            .animation
+            .through(scene.poses.iter().map(|pose| pose.at.as_slice()));
+        scene.layout = Layout::Given;
+        scene
     }
 
     /// The poses' names, in order.

@@ -83,8 +83,9 @@ impl Patch {
         Self { corners, ordinates }
     }
 
-    /// The value at barycentric coordinates of the whole triangle.
-    pub(super) fn value(&self, barycentric: [f64; 3]) -> f64 {
+    /// The value at barycentric coordinates of the whole triangle: what [`value_form`] is measured by.
+    #[cfg(test)]
+    fn value(&self, barycentric: [f64; 3]) -> f64 {
         let (k, inner) = sub_triangle(barycentric);
         let mut net = self.ordinates[k];
         // De Casteljau: three rounds of means.
@@ -139,15 +140,77 @@ impl Patch {
     }
 }
 
-/// The energy of the patch as a quadratic form in its nine data: the integral of the squared second derivatives plus
-/// `gradient_weight` times that of the squared gradient. Exact: both are integrals of products of Bezier polynomials.
-pub(super) fn stiffness(corners: [Point; 3], gradient_weight: f64) -> [[f64; 9]; 9] {
+/// The value at barycentric coordinates as a linear form in the nine data: [`Patch::value`] transposed, for many patches
+/// over one triangle.
+pub(super) fn value_form(corners: [Point; 3], barycentric: [f64; 3]) -> [f64; 9] {
+    let centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let (i, [u, v, w]) = sub_triangle(barycentric);
+    let j = (i + 1) % 3;
+    // What the value takes of each corner's value, of the ordinates next to it, and of the middle ones.
+    let mut values = [0.0; 3];
+    let mut middle = [0.0; 3];
+    let mut to_centroid = [0.0; 3];
+    let mut to_next = [0.0; 3];
+    let mut to_previous = [0.0; 3];
+    values[i] = u * u * u;
+    values[j] = v * v * v;
+    to_next[i] = 3.0 * u * u * v;
+    to_previous[j] = 3.0 * u * v * v;
+    to_centroid[i] = 3.0 * u * u * w;
+    to_centroid[j] = 3.0 * v * v * w;
+    middle[i] = 6.0 * u * v * w;
+    let apex = w * w * w / 3.0;
+    let mut inner = [apex; 3];
+    inner[i] += 3.0 * u * w * w;
+    inner[j] += 3.0 * v * w * w;
+    for (k, share) in inner.into_iter().enumerate() {
+        to_centroid[k] += share / 3.0;
+        middle[k] += share / 3.0;
+        middle[(k + 2) % 3] += share / 3.0;
+    }
+    for (k, share) in middle.into_iter().enumerate() {
+        let next = (k + 1) % 3;
+        let edge = corners[next] - corners[k];
+        let foot = (centroid - corners[k]).dot(&edge) / edge.norm_squared();
+        to_next[k] += share * (1.0 - 1.5 * foot);
+        to_previous[next] += share * (1.5 * foot - 0.5);
+        to_centroid[k] += 0.5 * share;
+        to_centroid[next] += 0.5 * share;
+        values[k] -= 0.5 * share * (1.0 - foot);
+        values[next] -= 0.5 * share * foot;
+    }
+    let mut form = [0.0; 9];
+    for (k, data) in form.chunks_exact_mut(3).enumerate() {
+        data[0] = values[k] + to_next[k] + to_previous[k] + to_centroid[k];
+        let along = (corners[(k + 1) % 3] - corners[k]) * to_next[k]
+            + (corners[(k + 2) % 3] - corners[k]) * to_previous[k]
+            + (centroid - corners[k]) * to_centroid[k];
+        data[1] = along.x / 3.0;
+        data[2] = along.y / 3.0;
+    }
+    form
+}
+
+/// Two quadratic forms in the nine data of a patch, exact: both are integrals of products of Bezier polynomials.
+#[derive(Debug, Clone)]
+pub(super) struct Stiffness {
+    /// The integral of the squared second derivatives.
+    pub(super) bend: [[f64; 9]; 9],
+    /// The integral of the squared gradient.
+    pub(super) slope: [[f64; 9]; 9],
+}
+
+/// The energies of the patch over a triangle.
+pub(super) fn stiffness(corners: [Point; 3]) -> Stiffness {
     let basis: [Patch; 9] = std::array::from_fn(|k| {
         let mut data = [0.0; 9];
         data[k] = 1.0;
         Patch::new(corners, &data)
     });
-    let mut form = [[0.0; 9]; 9];
+    let mut form = Stiffness {
+        bend: [[0.0; 9]; 9],
+        slope: [[0.0; 9]; 9],
+    };
     for k in 0..3 {
         let sub = basis[0].sub_corners(k);
         let area = geometry::signed_area(sub);
@@ -157,14 +220,16 @@ pub(super) fn stiffness(corners: [Point; 3], gradient_weight: f64) -> [[f64; 9];
         let second = basis.each_ref().map(|patch| patch.second_derivatives(k, &directions));
         let gradient = basis.each_ref().map(|patch| patch.gradient_ordinates(k, &directions));
         let product = quadratic_products();
-        for ((row, bends), slopes) in form.iter_mut().zip(&second).zip(&gradient) {
+        for row in 0..9 {
+            let (bends, slopes) = (&second[row], &gradient[row]);
             let weighted = product.map(|row| row.iter().zip(slopes).map(|(p, slope)| slope * *p).sum::<Point>());
-            for ((entry, other_bends), other_slopes) in row.iter_mut().zip(&second).zip(&gradient) {
+            for column in 0..9 {
+                let (other_bends, other_slopes) = (&second[column], &gradient[column]);
                 // The integral of a product of linear functions from their corner values.
                 let corners: f64 = bends.iter().zip(other_bends).map(|(a, b)| squared(a, b)).sum();
-                let bend = (corners + squared(&sum(bends), &sum(other_bends))) / 12.0;
                 let slope: f64 = weighted.iter().zip(other_slopes).map(|(a, b)| a.dot(b)).sum();
-                *entry += area * (bend + gradient_weight * slope);
+                form.bend[row][column] += area * (corners + squared(&sum(bends), &sum(other_bends))) / 12.0;
+                form.slope[row][column] += area * slope;
             }
         }
     }
@@ -238,7 +303,7 @@ mod tests {
             let p = (0..3).map(|k| corners[k] * barycentric[k]).sum();
             assert!((patch.value(barycentric) - quadratic(p).0).abs() < 1e-13);
         }
-        let form = stiffness(corners, 0.0);
+        let form = stiffness(corners).bend;
         let energy: f64 = (0..81).map(|k| data[k / 9] * form[k / 9][k % 9] * data[k % 9]).sum();
         // Second derivatives 2, -3, -3, 1 everywhere.
         assert!(
@@ -251,8 +316,9 @@ mod tests {
     fn a_linear_function_has_only_its_gradient_energy() {
         let corners = triangle();
         let data = data_of(corners, |p| (p.x * 3.0 + p.y * 4.0, Point::new(3.0, 4.0)));
-        let form = stiffness(corners, 2.0);
-        let energy: f64 = (0..81).map(|k| data[k / 9] * form[k / 9][k % 9] * data[k % 9]).sum();
+        let Stiffness { bend, slope } = stiffness(corners);
+        let form = |k: usize| bend[k / 9][k % 9] + 2.0 * slope[k / 9][k % 9];
+        let energy: f64 = (0..81).map(|k| data[k / 9] * form(k) * data[k % 9]).sum();
         assert!(
             (energy - 50.0 * geometry::signed_area(corners)).abs() < 1e-10,
             "{energy}"
@@ -261,6 +327,18 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(32))]
+        #[test]
+        fn the_form_of_a_value_is_the_patch_transposed(
+            data in proptest::array::uniform9(-1.0..1.0f64),
+            (a, b) in (0.0..1.0f64, 0.0..1.0f64),
+        ) {
+            let barycentric = [a * (1.0 - b), (1.0 - a) * (1.0 - b), b];
+            let patch = Patch::new(triangle(), &data).value(barycentric);
+            let form = value_form(triangle(), barycentric);
+            let value: f64 = form.iter().zip(&data).map(|(f, d)| f * d).sum();
+            prop_assert!((value - patch).abs() < 1e-14, "{value} instead of {patch}");
+        }
+
         #[test]
         fn neighbours_join_with_one_tangent_plane(
             data in proptest::collection::vec(-1.0..1.0f64, 12),

@@ -4,21 +4,23 @@
 //! `epsilon` times the sum over triangles of `|J_i|^2`, both unweighted as printed. It stands for second derivatives
 //! only where triangles are even. The result is piecewise linear; for smooth evaluation each vertex takes the mean of
 //! its triangles' gradients, weighted by area, which is linear in the data and keeps the values.
+//!
+//! Unknown `v` is the value at vertex `v`.
 
-use super::WeightError;
-use super::surface::Jet;
+use super::elements::Entry;
 use super::tessellation::Tessellation;
+use super::{WallProblem, WeightError};
 use crate::math::Point;
 use crate::mesh::{Topology, geometry};
-use crate::solve::{SparseCholesky, Triplets};
+use crate::solve::Triplets;
 
-/// The jets (#vertices x #poses) of the functions that are 1 at one of the first `pose_count` vertices and 0 at the
-/// others.
-pub(super) fn minimise(mesh: &Tessellation, pose_count: usize, epsilon: f64) -> Result<Vec<Jet>, WeightError> {
-    let values = vertex_values(mesh, pose_count, epsilon)?;
-    let vertex_count = mesh.positions.len();
-    let mut jets = vec![[0.0; 3]; vertex_count * pose_count];
-    let mut areas = vec![0.0; vertex_count];
+/// The gradient at a vertex as a linear form: an unknown and what it is multiplied with.
+pub(super) type GradientForm = Vec<(usize, Point)>;
+
+/// The recovered gradient at each vertex.
+pub(super) fn recovery(mesh: &Tessellation) -> Vec<GradientForm> {
+    let mut forms = vec![GradientForm::new(); mesh.positions.len()];
+    let mut areas = vec![0.0; mesh.positions.len()];
     for &triangle in &mesh.triangles {
         let corners = geometry::corners(&mesh.positions, triangle);
         let area = geometry::signed_area(corners);
@@ -27,34 +29,29 @@ pub(super) fn minimise(mesh: &Tessellation, pose_count: usize, epsilon: f64) -> 
         };
         for vertex in triangle {
             areas[vertex] += area;
-        }
-        for pose in 0..pose_count {
-            let gradient: Point = triangle
-                .iter()
-                .zip(directions)
-                .map(|(&vertex, direction)| direction * values[vertex * pose_count + pose])
-                .sum();
-            for vertex in triangle {
-                let jet = &mut jets[vertex * pose_count + pose];
-                jet[1] += area * gradient.x;
-                jet[2] += area * gradient.y;
+            for (unknown, direction) in triangle.into_iter().zip(directions) {
+                match forms[vertex].iter_mut().find(|(known, _)| *known == unknown) {
+                    Some((_, form)) => *form += direction * area,
+                    None => forms[vertex].push((unknown, direction * area)),
+                }
             }
         }
     }
-    for (vertex, at_vertex) in jets.chunks_exact_mut(pose_count).enumerate() {
-        for (jet, value) in at_vertex.iter_mut().zip(&values[vertex * pose_count..]) {
-            *jet = [*value, jet[1] / areas[vertex], jet[2] / areas[vertex]];
+    for (form, area) in forms.iter_mut().zip(areas) {
+        for (_, direction) in form {
+            *direction /= area;
         }
     }
-    Ok(jets)
+    forms
 }
 
-/// The minimiser's values, #vertices x #poses.
-fn vertex_values(mesh: &Tessellation, pose_count: usize, epsilon: f64) -> Result<Vec<f64>, WeightError> {
+/// The lower triangle of the energy's matrix; `epsilons` has one weight a triangle.
+pub(super) fn energy(mesh: &Tessellation, epsilons: &[f64]) -> Result<Vec<Entry>, WeightError> {
     let vertex_count = mesh.positions.len();
-    let Ok(topology) = Topology::new(vertex_count, mesh.triangles.clone()) else {
-        return Err(WeightError::NoPose);
-    };
+    let topology = Topology::new(vertex_count, mesh.triangles.clone()).map_err(|_| WeightError::Wall {
+        wall: 0,
+        problem: WallProblem::Tangled,
+    })?;
     let directions: Vec<[Point; 3]> = mesh
         .triangles
         .iter()
@@ -75,31 +72,9 @@ fn vertex_values(mesh: &Tessellation, pose_count: usize, epsilon: f64) -> Result
         add_gradient(row, first, 1.0);
         add_gradient(row, second, -1.0);
     }
-    for triangle in 0..mesh.triangles.len() {
+    for (triangle, epsilon) in epsilons.iter().enumerate() {
         add_gradient(pairs.len() + triangle, triangle, epsilon.sqrt());
     }
-    // The poses are the first vertices; their values are known.
     let normal = terms.build().normal();
-    let unknown_count = vertex_count - pose_count;
-    let mut system = Triplets::new(unknown_count, unknown_count);
-    let mut right = vec![vec![0.0; pose_count]; unknown_count];
-    for (row, column, value) in normal.entries() {
-        match (row.checked_sub(pose_count), column.checked_sub(pose_count)) {
-            (Some(row), Some(column)) => system.add(row, column, value),
-            (Some(row), None) => right[row][column] -= value,
-            (None, _) => {}
-        }
-    }
-    let factor = SparseCholesky::new(&system.build())?;
-    let mut values = vec![0.0; vertex_count * pose_count];
-    let mut buffer = Vec::new();
-    for pose in 0..pose_count {
-        values[pose * pose_count + pose] = 1.0;
-        let mut lane: Vec<[f64; 1]> = right.iter().map(|row| [row[pose]]).collect();
-        factor.solve(&mut lane, &mut buffer)?;
-        for (unknown, [value]) in lane.into_iter().enumerate() {
-            values[(pose_count + unknown) * pose_count + pose] = value;
-        }
-    }
-    Ok(values)
+    Ok(normal.entries().filter(|(row, column, _)| row >= column).collect())
 }

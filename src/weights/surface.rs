@@ -1,67 +1,76 @@
-//! Smooth functions over a triangulated square, one a pose, from values and gradients at the vertices.
+//! Smooth functions over a triangulated part of the plane, one a pose, from values and gradients at the vertices.
 
-use super::clough_tocher::Patch;
+use super::clough_tocher;
 use super::tessellation::{REACH, Tessellation};
 use crate::math::Point;
-use crate::mesh::{PointLocator, geometry};
+use crate::mesh::{Located, PointLocator, geometry};
 
-/// Value, derivative along x and derivative along y.
-pub(super) type Jet = [f64; 3];
-
-/// Functions with a continuous gradient over the square of half width [`REACH`].
+/// Functions with a continuous gradient over the square of half width [`REACH`], but for walls and holes.
 #[derive(Debug, Clone)]
 pub(super) struct Surface {
     mesh: Tessellation,
     locator: PointLocator,
-    /// #vertices x #poses.
-    jets: Vec<Jet>,
+    /// #vertices x 3 (value, derivative along x and along y) x #poses.
+    jets: Vec<f64>,
     pose_count: usize,
 }
 
 impl Surface {
-    /// The surface through `jets` (#vertices x #poses).
+    /// Functions that are 1 for the first pose and 0 for the others, until they are given.
+    pub(super) fn new(mesh: Tessellation) -> Self {
+        let locator = PointLocator::new(&mesh.triangles, &mesh.positions);
+        Self {
+            jets: mesh.positions.iter().flat_map(|_| [1.0, 0.0, 0.0]).collect(),
+            mesh,
+            locator,
+            pose_count: 1,
+        }
+    }
+
+    /// Takes other functions: `jets` is #vertices x 3 x `pose_count`.
     ///
     /// The jets are first made to sum to (1, 0, 0) at each vertex, which they do but for the rounding in the solve: the
     /// difference is shared out evenly, and nothing changes at the poses.
-    pub(super) fn new(mesh: Tessellation, mut jets: Vec<Jet>, pose_count: usize) -> Self {
-        for at_vertex in jets.chunks_exact_mut(pose_count) {
-            for (k, whole) in [1.0, 0.0, 0.0].into_iter().enumerate() {
-                let missing = whole - at_vertex.iter().map(|jet| jet[k]).sum::<f64>();
-                for jet in at_vertex.iter_mut() {
-                    jet[k] += missing / pose_count as f64;
-                }
+    pub(super) fn set(&mut self, mut jets: Vec<f64>, pose_count: usize) {
+        for (k, part) in jets.chunks_exact_mut(pose_count).enumerate() {
+            let whole = if k % 3 == 0 { 1.0 } else { 0.0 };
+            let missing = whole - part.iter().sum::<f64>();
+            for entry in part {
+                *entry += missing / pose_count as f64;
             }
         }
-        let locator = PointLocator::new(&mesh.triangles, &mesh.positions);
-        Self {
-            mesh,
-            locator,
-            jets,
-            pose_count,
-        }
+        self.jets = jets;
+        self.pose_count = pose_count;
     }
 
-    pub(super) fn vertex_count(&self) -> usize {
-        self.mesh.positions.len()
+    pub(super) fn mesh(&self) -> &Tessellation {
+        &self.mesh
     }
 
-    /// The values at `p`, or at the nearest point of the square; `values` is overwritten.
+    /// Where `p`, or the nearest point of the mesh, is. `None` only without triangles.
+    pub(super) fn locate(&self, p: Point) -> Option<Located> {
+        self.locator
+            .nearest(p.map(|coordinate| coordinate.clamp(-REACH, REACH)))
+    }
+
+    /// The values at `p`, or at the nearest point of the mesh; `values` is overwritten.
     pub(super) fn values(&self, p: Point, values: &mut Vec<f64>) {
         values.clear();
-        let inside = p.map(|coordinate| coordinate.clamp(-REACH, REACH));
-        let Some(located) = self.locator.nearest(inside) else {
+        let Some(located) = self.locate(p) else {
             // A mesh without triangles does not come about.
             values.resize(self.pose_count, 1.0 / self.pose_count as f64);
             return;
         };
+        values.resize(self.pose_count, 0.0);
         let vertices = self.mesh.triangles[located.triangle];
-        let corners = geometry::corners(&self.mesh.positions, vertices);
-        for pose in 0..self.pose_count {
-            let mut data = [0.0; 9];
-            for (at_corner, vertex) in data.chunks_exact_mut(3).zip(vertices) {
-                at_corner.copy_from_slice(&self.jets[vertex * self.pose_count + pose]);
+        let form = clough_tocher::value_form(geometry::corners(&self.mesh.positions, vertices), located.barycentric);
+        for (vertex, factors) in vertices.into_iter().zip(form.chunks_exact(3)) {
+            let jet = &self.jets[vertex * 3 * self.pose_count..(vertex + 1) * 3 * self.pose_count];
+            for (part, factor) in jet.chunks_exact(self.pose_count).zip(factors) {
+                for (value, entry) in values.iter_mut().zip(part) {
+                    *value += factor * entry;
+                }
             }
-            values.push(Patch::new(corners, &data).value(located.barycentric));
         }
     }
 }

@@ -4,6 +4,8 @@ use proptest::prelude::*;
 
 use super::*;
 
+mod plane;
+
 fn places(points: &[[f64; 2]]) -> Vec<Vec<f64>> {
     points.iter().map(|p| p.to_vec()).collect()
 }
@@ -134,14 +136,37 @@ fn weights_do_not_kink_between_vertices() {
     }
 }
 
+/// The weights of `poses`, in a frame of their own, on a given mesh.
+fn solved(mesh: tessellation::Tessellation, poses: &[crate::math::Point], energy: Energy) -> surface::Surface {
+    let (epsilon, gradient_unit) = match energy {
+        Energy::Hessian => (1e-3, 1024.0),
+        Energy::JacobianDifferences => (1e-3, 1.0),
+    };
+    let plan = space::Plan {
+        poses,
+        walls: &walls::Walls::default(),
+        energy,
+        epsilon,
+        range: Range::Free,
+        flat: Vec::new(),
+        pulled: Vec::new(),
+        frame: space::Frame {
+            centre: crate::math::Point::zeros(),
+            diagonal: 1.0,
+        },
+        held: Vec::new(),
+    };
+    let space = space::Space::on_mesh(mesh, gradient_unit, &plan, &space::Wishes::default()).expect("a layout");
+    space.surface().clone()
+}
+
 #[test]
 fn the_default_energy_converges() {
     // The same weights from a mesh with four times the vertices.
     let poses = [[-0.4, -0.3], [0.4, -0.3], [0.4, 0.3], [-0.1, 0.1], [0.0, 0.15]].map(crate::math::Point::from);
     let surface = |refinement: u32| {
-        let mesh = tessellation::graded(&poses, refinement);
-        let jets = hessian::minimise(&mesh, poses.len(), 1.0).expect("a layout");
-        surface::Surface::new(mesh, jets, poses.len())
+        let mesh = tessellation::graded(&poses, &walls::Walls::default(), refinement).expect("no walls");
+        solved(mesh, &poses, Energy::Hessian)
     };
     let (coarse, fine) = (surface(0), surface(1));
     let (mut a, mut b) = (Vec::new(), Vec::new());
@@ -232,6 +257,67 @@ fn radial_weights_agree_with_the_independent_implementation() {
     let provider = RbfWeights::new(&scattered, &thin).expect("a layout");
     assert_close(&at(&provider, [0.5, 0.4]), &THIN_PLATE[0]);
     assert_close(&at(&provider, [1.5, -0.2]), &THIN_PLATE[1]);
+}
+
+#[test]
+fn radial_weights_are_edited_like_a_new_fit_and_batches_equal_single_places() {
+    let scattered: Vec<Vec<f64>> = (0..14)
+        .map(|k| (0..4).map(|d| (f64::from(k) * 1.7 * f64::from(d + 3)).sin()).collect())
+        .collect();
+    let queries: Vec<f64> = (0..4 * 37).map(|k| 1.2 * (f64::from(k) * 0.37).sin()).collect();
+    for radial in [Radial::BSpline, Radial::ThinPlate] {
+        let options = RbfOptions {
+            radial,
+            pseudo_poses: vec![PseudoPose {
+                from: vec![0.1; 4],
+                at: vec![0.3; 4],
+            }],
+        };
+        let mut edited = RbfWeights::new(&scattered, &options).expect("a layout");
+        let mut layout = scattered.clone();
+        layout[3] = vec![0.2, 0.1, -0.4, 0.9];
+        edited.move_pose(3, &layout[3]).expect("a place");
+        layout.push(vec![-0.6, 0.5, 0.4, 0.2]);
+        edited.insert_pose(&layout[14]).expect("a place");
+        layout.remove(0);
+        edited.remove_pose(0).expect("a pose");
+        let fresh = RbfWeights::new(&layout, &options).expect("a layout");
+        let (mut many, mut one, mut other) = (Vec::new(), Vec::new(), Vec::new());
+        edited.weights_of_many(&queries, &mut many).expect("places");
+        for (query, row) in queries.chunks_exact(4).zip(many.chunks_exact(14)) {
+            edited.weights(query, &mut one).expect("a place");
+            fresh.weights(query, &mut other).expect("a place");
+            assert_eq!((row, &one), (one.as_slice(), &other));
+        }
+        assert!(edited.move_pose(14, &layout[0]).is_err() && edited.insert_pose(&layout[2]).is_err());
+        assert!(edited.weights_of_many(&queries[..5], &mut many).is_err());
+        edited.weights(&queries[..4], &mut other).expect("a place");
+        fresh.weights(&queries[..4], &mut one).expect("a place");
+        assert_eq!(one, other);
+    }
+}
+
+#[test]
+fn nearly_singular_layouts_are_refused_with_the_poses_to_blame() {
+    let mut layout = places(&[[0.1, 0.2], [0.9, 0.1], [0.4, 0.7], [0.8, 0.8], [0.2, 0.5]]);
+    layout.push(vec![0.4 + 2e-6, 0.7]);
+    let options = RbfOptions {
+        radial: Radial::ThinPlate,
+        ..RbfOptions::default()
+    };
+    let error = RbfWeights::new(&layout, &options).expect_err("nearly singular");
+    let WeightError::NearlySingular { poses, condition } = &error else {
+        panic!("{error}");
+    };
+    assert_eq!((poses.as_slice(), *condition > 1e10), (&[2, 5][..], true));
+    let message = error.naming(|pose| format!("'{}'", ["a", "b", "run", "c", "d", "jump"][pose]));
+    assert!(
+        message.contains("'run', 'jump'") && message.contains("move one"),
+        "{message}"
+    );
+    layout.pop();
+    let fine = RbfWeights::new(&layout, &options).expect("a layout");
+    assert!(fine.condition() < 1e4, "{}", fine.condition());
 }
 
 fn assert_close(found: &[f64], expected: &[f64]) {

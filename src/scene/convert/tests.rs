@@ -126,8 +126,12 @@ fn unknown_keys_are_refused_with_their_line() {
 fn keys_of_later_releases_are_refused_by_name() {
     for (text, line, word) in [
         ("[[layer]]\nname = \"arm\"\n", 10, "layer"),
-        ("[pose_space]\nbounded = true\n", 11, "bounded"),
-        ("[pose_space]\nwalls = [[[0.2, 0.0], [0.2, 0.6]]]\n", 11, "walls"),
+        ("[pose_space]\nprovider = \"rbf\"\nbounded = true\n", 12, "bounded"),
+        (
+            "[pose_space]\nprovider = \"rbf\"\nwalls = [[[0.2, 0.0], [0.2, 0.6]]]\n",
+            12,
+            "walls",
+        ),
         (
             "[[pose]]\nname = \"c\"\nsource = { body = \"c.svg\" }\nat = [5, 5]\n",
             12,
@@ -265,6 +269,51 @@ fn anchors_regions_and_guard_are_read() {
 }
 
 #[test]
+fn walls_and_bounds_are_read() {
+    let scene = parse(&format!(
+        "{TWO}[pose_space]\nbounded = true\nwalls = [[[0.2, 0.0], [0.2, 0.6]], [[1, 2], [3, 4], [5, 6]]]\n"
+    ))
+    .expect("a scene");
+    assert_eq!(scene.pose_space.range, WeightRange::Unit);
+    assert_eq!(scene.pose_space.walls[0], vec![[0.2, 0.0], [0.2, 0.6]]);
+    assert_eq!(scene.pose_space.walls[1].len(), 3);
+    for (walls, word) in [
+        ("[[[0.2, 0.0]]]", "wall 0 has 1 points"),
+        ("[[[0, 0], [1, 0]], [[0.2, 0.0, 1.0], [1, 1]]]", "point 0 of wall 1"),
+        ("[[[0, 0], [nan, 0]]]", "point 1 of wall 0"),
+    ] {
+        let (line, message) = refused(&format!("{TWO}[pose_space]\nwalls = {walls}\n"));
+        assert_eq!(line, Some(11), "{message}");
+        assert!(message.contains(word), "{message}");
+    }
+}
+
+#[test]
+fn a_scene_without_places_takes_them_later() {
+    let text = TWO.replace("at = [0, 0]\n", "").replace("at = [1.0, 0.5]\n", "");
+    let scene = parse(&format!("{text}[animation]\nfps = 12\nloop = false\n")).expect("a scene");
+    assert_eq!(
+        (scene.layout, parse(TWO).expect("a scene").layout),
+        (Layout::Automatic, Layout::Given)
+    );
+    let placed = scene.laid_out(&[vec![-3.0, 0.0], vec![5.0, 1.0]]);
+    assert_eq!((placed.layout, &placed.poses[1].at), (Layout::Given, &vec![5.0, 1.0]));
+    assert_eq!(
+        (placed.animation.at(0.0), placed.animation.at(1.0)),
+        (vec![-3.0, 0.0], vec![5.0, 1.0])
+    );
+    assert_eq!((placed.animation.fps, placed.animation.is_loop()), (12.0, false));
+    let keyed = parse(&format!(
+        "{text}[animation]\nkeys = [ {{ time = 0, at = [0.5, 0] }} ]\n"
+    ))
+    .expect("a scene");
+    assert_eq!(
+        keyed.laid_out(&[vec![-3.0, 0.0], vec![5.0, 1.0]]).animation,
+        keyed.animation
+    );
+}
+
+#[test]
 fn places_are_checked() {
     let (line, message) = refused(&TWO.replace("[1.0, 0.5]", "[0.0, 0.0]"));
     assert_eq!(line, Some(7));
@@ -329,10 +378,18 @@ fn a_new_scene_reads_back() {
         [("a", "a.png"), ("say \"hi\"", "b c.png"), ("c", "c.svg")].map(|(name, source)| super::super::NewPose {
             name: name.to_owned(),
             source: source.to_owned(),
+            at: None,
         });
     let text = super::super::scene_text(&poses);
     let scene = parse(&text).expect("a scene");
     assert_eq!(scene.names(), ["a", "say \"hi\"", "c"]);
+    assert_eq!(scene.layout, Layout::Automatic);
+    let placed = poses.clone().map(|pose| super::super::NewPose {
+        at: Some([0.25, -f64::from(pose.source.as_bytes()[0])]),
+        ..pose
+    });
+    let scene = parse(&super::super::scene_text(&placed)).expect("a scene");
+    assert_eq!((scene.layout, &scene.poses[1].at), (Layout::Given, &vec![0.25, -98.0]));
     // The commented landmark is valid once the comment signs go.
     let open = text
         .replace("# [[landmark]]\n# name", "[[landmark]]\nname")
