@@ -188,9 +188,6 @@ impl Task<'_> {
     /// Only a shape with rotational symmetry has such ties, so that turning a drawing changes nothing for any other.
     fn choose(&self, candidates: Vec<CoarseMatch>) -> Option<CoarseMatch> {
         let least = candidates.iter().map(|c| c.cost).fold(f32::INFINITY, f32::min);
-        for c in &candidates {
-            eprintln!("DBG {} {}", c.cost, self.rotation(c));
-        }
         candidates
             .into_iter()
             .filter(|c| c.cost <= (TIE_MARGIN.0 * least + TIE_MARGIN.1).max(SAMPLING_COST))
