@@ -21,6 +21,7 @@ mod layout;
 mod mapping;
 mod reach;
 mod report;
+mod sides;
 mod triangulation;
 mod weighting;
 

@@ -91,6 +91,36 @@ fn a_point_inside_that_a_pose_lacks_is_put_there_and_reported() {
     );
 }
 
+/// The line bulges far down in the wide box, past the place that a point just below it would have there.
+#[test]
+fn a_point_that_a_pose_lacks_stays_on_its_side_of_a_dividing_line() {
+    let line = "[[landmark]]\nname = \"belt\"\npath = true\n\
+        at = { tall = [[12, 20], [20, 20], [28, 20]], wide = [[4, 20], [20, 26], [36, 20]] }\n";
+    for (name, y, is_below) in [("navel", 22, true), ("heart", 18, false)] {
+        let workshop = Workshop::new();
+        let point = format!("[[landmark]]\nname = \"{name}\"\nat = {{ tall = [20, {y}] }}\n");
+        let (mapping, notes) = map(&workshop, &format!("{line}{point}"));
+        assert!(notes.contains(name) && notes.contains("was put at"), "{notes}");
+        let vertex = vertex_at(&mapping, 0, [20.0, f64::from(y)]);
+        let place = &mapping["poses"][1]["vertices"][vertex];
+        let (x, y) = (place[0].as_f64().expect("x"), place[1].as_f64().expect("y"));
+        let line_y = 26.0 - (x - 20.0).abs() * 6.0 / 16.0;
+        assert_eq!(y > line_y, is_below, "{name} at {x} {y}");
+    }
+}
+
+#[test]
+fn a_line_back_to_where_it_began_is_refused_by_name_and_pose() {
+    let workshop = Workshop::new();
+    let line = "[[landmark]]\nname = \"loop\"\npath = true\n\
+        at = { tall = [[12, 20], [20, 16], [20, 24], [12, 20]], wide = [[4, 20], [20, 16], [20, 24], [4, 20]] }\n";
+    workshop.two_poses("[0, 0]", "[1, 0]", line);
+    let message = workshop.fails(&["map", "scene.toml", "-o", "mapping.json"], 1);
+    for word in ["'loop'", "line 11", "'tall'", "same place"] {
+        assert!(message.contains(word), "'{word}' is not in: {message}");
+    }
+}
+
 #[test]
 fn lines_that_cannot_be_are_refused_with_their_names_and_lines() {
     let line = |name: &str, tall: &str| {

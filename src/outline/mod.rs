@@ -8,6 +8,8 @@ mod arc_length;
 mod ring;
 mod shape;
 pub mod simplicity;
+#[cfg(test)]
+pub(crate) mod testing;
 
 pub use arc_length::{ArcLength, parameter_gap};
 pub use ring::{Ring, RingError};

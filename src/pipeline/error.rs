@@ -100,6 +100,16 @@ pub enum PipelineError {
         /// The pose's name.
         pose: String,
     },
+    /// A line leads from a place of the outline back to the same place.
+    #[error(
+        "landmark {landmark} begins and ends at the same place of the outline of pose '{pose}'; let its ends lie apart, or one of them inside"
+    )]
+    LandmarkClosed {
+        /// Which.
+        landmark: LandmarkLabel,
+        /// The name of a pose in which it is drawn.
+        pose: String,
+    },
     /// Something lies on different sides of a line.
     #[error(
         "pose '{pose}' has a hole or landmark on the other side of landmark {landmark} than pose '{other}'; let the same things lie on each side, or end the line inside"

@@ -18,12 +18,21 @@ const CELLS: u32 = 48;
 
 /// A point's place in `pose`, predicted from its places in the others; `None` if no pose has it.
 pub(super) fn predicted(polygons: &[Outline], places: &[Option<Point>], pose: usize) -> Option<Point> {
-    let target: Vec<Point> = vertices(&polygons[pose]).collect();
+    let shapes: Vec<Vec<&[Point]>> = polygons
+        .iter()
+        .map(|polygon| polygon.rings().iter().map(|ring| ring.points()).collect())
+        .collect();
+    predicted_in(&shapes, places, pose)
+}
+
+/// As [`predicted`], within any shapes that correspond point by point, each a list of rings.
+pub(super) fn predicted_in(shapes: &[Vec<&[Point]>], places: &[Option<Point>], pose: usize) -> Option<Point> {
+    let target: Vec<Point> = shapes[pose].concat();
     let mut sum = Point::zeros();
     let mut count = 0.0;
-    for (polygon, place) in polygons.iter().zip(places) {
+    for (shape, place) in shapes.iter().zip(places) {
         if let Some(place) = place {
-            let weights = mean_value_weights(polygon, *place);
+            let weights = mean_value_weights(shape, *place);
             sum += weights
                 .iter()
                 .zip(&target)
@@ -35,18 +44,14 @@ pub(super) fn predicted(polygons: &[Outline], places: &[Option<Point>], pose: us
     (count > 0.0 && point::is_finite(sum)).then(|| sum / count)
 }
 
-fn vertices(polygon: &Outline) -> impl Iterator<Item = Point> + '_ {
-    polygon.rings().iter().flat_map(|ring| ring.points()).copied()
-}
-
 /// Mean value coordinates of a point inside, one a vertex; they sum to 1 and reproduce the point.
-fn mean_value_weights(polygon: &Outline, p: Point) -> Vec<f64> {
+fn mean_value_weights(shape: &[&[Point]], p: Point) -> Vec<f64> {
     let mut weights = Vec::new();
-    for ring in polygon.rings() {
+    for ring in shape {
         let start = weights.len();
         weights.resize(start + ring.len(), 0.0);
-        for (k, (a, b)) in ring.edges().enumerate() {
-            let (u, v) = (a - p, b - p);
+        for (k, a) in ring.iter().enumerate() {
+            let (u, v) = (a - p, ring[(k + 1) % ring.len()] - p);
             // tan(angle / 2) between the directions to the two ends.
             let half_tangent = point::cross(u, v) / (u.norm() * v.norm() + u.dot(&v));
             if half_tangent.is_finite() {
@@ -80,15 +85,21 @@ impl Obstacles {
         self.segments.extend(places.windows(2).map(|link| (link[0], link[1])));
     }
 
-    /// The place itself if there is room about it, else the nearest place of a grid with room; `None` if there is none.
-    pub(super) fn nearest_free(&self, polygon: &Outline, place: Point) -> Option<Point> {
+    /// The place itself if there is room about it and it is allowed, else the nearest such place of a grid; `None` if there
+    /// is none.
+    pub(super) fn nearest_free(
+        &self,
+        polygon: &Outline,
+        place: Point,
+        is_allowed: impl Fn(Point) -> bool,
+    ) -> Option<Point> {
         let (low, high) = point::bounding_box(polygon.outer().points())?;
         (0..=HALVINGS).find_map(|halving| {
             let share = 0.5_f64.powi(halving as i32);
             let room = ROOM * share * (high - low).norm();
             let is_free = |p: Point| {
                 let away = |&(a, b): &(Point, Point)| point::nearest_on_segment(p, a, b).1 >= room;
-                polygon.contains(p) && self.segments.iter().all(away)
+                polygon.contains(p) && self.segments.iter().all(away) && is_allowed(p)
             };
             if is_free(place) {
                 return Some(place);
@@ -140,10 +151,13 @@ mod tests {
         let corner = outline(&[[0.0, 0.0], [9.0, 0.0], [9.0, 1.0], [1.0, 1.0], [1.0, 9.0], [0.0, 9.0]]);
         let mut obstacles = Obstacles::new(&corner);
         let outside = Point::new(1.2, 5.0);
-        let first = obstacles.nearest_free(&corner, outside).expect("a place");
+        let first = obstacles.nearest_free(&corner, outside, |_| true).expect("a place");
         assert!(corner.contains(first) && (first - outside).norm() < 0.6, "{first}");
         obstacles.add_point(first);
-        let second = obstacles.nearest_free(&corner, first).expect("another");
+        let second = obstacles.nearest_free(&corner, first, |_| true).expect("another");
         assert!(corner.contains(second) && second != first);
+        let beyond = obstacles.nearest_free(&corner, first, |p| p.x > 6.0).expect("a third");
+        assert!(corner.contains(beyond) && beyond.x > 6.0);
+        assert_eq!(obstacles.nearest_free(&corner, first, |_| false), None);
     }
 }

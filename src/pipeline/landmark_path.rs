@@ -77,8 +77,14 @@ impl<'a> Measured<'a> {
             travelled += (link[1] - link[0]).norm();
             parameters.push(travelled);
         }
-        for parameter in &mut parameters {
-            *parameter /= travelled;
+        let last = parameters.len() - 1;
+        for (k, parameter) in parameters.iter_mut().enumerate() {
+            // Without any length, evenly.
+            *parameter = if travelled > 0.0 {
+                *parameter / travelled
+            } else {
+                k as f64 / last.max(1) as f64
+            };
         }
         Self { points, parameters }
     }
@@ -90,7 +96,12 @@ impl<'a> Measured<'a> {
             .clamp(1, self.points.len() - 1)
             - 1;
         let (start, end) = (self.parameters[link], self.parameters[link + 1]);
-        let along = ((t - start) / (end - start)).clamp(0.0, 1.0);
+        // A link without length ends where it begins.
+        let along = if end > start {
+            ((t - start) / (end - start)).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
         let (a, b) = (self.points[link], self.points[link + 1]);
         if along == 1.0 { b } else { a + (b - a) * along }
     }
@@ -121,6 +132,16 @@ mod tests {
                 vec![place(4.0, 0.0), None, place(3.0, 1.0)],
             ]
         );
+    }
+
+    #[test]
+    fn points_drawn_twice_change_nothing() {
+        let plain = line(&[[0.0, 0.0], [3.0, 0.0], [3.0, 1.0]]);
+        let doubled = line(&[[0.0, 0.0], [0.0, 0.0], [3.0, 0.0], [3.0, 0.0], [3.0, 1.0], [3.0, 1.0]]);
+        assert_eq!(corresponding(&[doubled], &[0.1]), corresponding(&[plain], &[0.1]));
+        let dot = line(&[[2.0, 5.0], [2.0, 5.0], [2.0, 5.0]]);
+        let place = vec![Some(Point::new(2.0, 5.0))];
+        assert_eq!(corresponding(&[dot], &[0.1]), vec![place.clone(), place]);
     }
 
     #[test]

@@ -6,8 +6,9 @@
 
 use super::PipelineError;
 use super::drawings::{mirror_axis, reflected};
-use super::inside::{self, Obstacles};
+use super::inside::Obstacles;
 use super::landmark_path;
+use super::sides::Sides;
 use crate::compatible::{CompatibleMesh, FeaturePath, Features, PathEnd};
 use crate::input::Drawing;
 use crate::matching::Landmark;
@@ -186,7 +187,13 @@ impl Landmarks {
             line,
             pose: scene.poses[pose].name.clone(),
         };
-        for path in &self.paths {
+        let mut sides = Sides::default();
+        // Those from outline to outline first: whatever else is placed has to be on the right side of them.
+        let mut order: Vec<usize> = (0..self.paths.len()).collect();
+        order.sort_by_key(|&k| self.paths[k].ends.iter().any(Option::is_none));
+        let mut paths: Vec<Option<FeaturePath>> = vec![None; self.paths.len()];
+        for number in order {
+            let path = &self.paths[number];
             let mut rows = landmark_path::corresponding(&path.at, &deviations);
             let mut ends = [PathEnd::Inside; 2];
             for (end, anchor) in path.ends.iter().enumerate() {
@@ -203,14 +210,23 @@ impl Landmarks {
             for row in &rows {
                 let all: Result<Vec<Point>, PipelineError> = (0..polygons.len())
                     .map(|pose| {
-                        let place = row[pose].or_else(|| inside::predicted(polygons, row, pose));
+                        let place = row[pose].or_else(|| sides.predicted(polygons, row, pose));
                         place.ok_or_else(|| lacking(pose, &path.name, path.line))
                     })
                     .collect();
                 points.push(all?);
             }
+            let on_outline = ends.map(|end| match end {
+                PathEnd::Inside => None,
+                PathEnd::Boundary { vertex, .. } => Some(vertex),
+            });
             for (pose, obstacles) in obstacles.iter_mut().enumerate() {
-                obstacles.add_line(points.iter().map(|places| places[pose]));
+                let end = |end: Option<usize>| end.map(|vertex| polygons[pose].outer().point(vertex));
+                let between = points.iter().map(|places| places[pose]);
+                obstacles.add_line(end(on_outline[0]).into_iter().chain(between).chain(end(on_outline[1])));
+            }
+            if let [Some(from), Some(to)] = on_outline {
+                sides.add_line(polygons, [from, to], &points);
             }
             for (pose, _) in path.at.iter().enumerate().filter(|(_, points)| points.is_none()) {
                 notes.push(format!(
@@ -218,8 +234,9 @@ impl Landmarks {
                     path.name, scene.poses[pose].name
                 ));
             }
-            features.paths.push(FeaturePath { ends, points });
+            paths[number] = Some(FeaturePath { ends, points });
         }
+        features.paths = paths.into_iter().flatten().collect();
         for landmark in &self.points {
             for (pose, place) in landmark.at.iter().enumerate() {
                 if let Some(place) = place {
@@ -234,8 +251,11 @@ impl Landmarks {
                     places.push(*place);
                     continue;
                 }
-                let place = inside::predicted(polygons, &landmark.at, pose)
-                    .and_then(|place| obstacles[pose].nearest_free(&polygons[pose], place))
+                let wanted = sides.wanted(&landmark.at);
+                let is_allowed = |p: Point| wanted.as_ref().is_none_or(|wanted| sides.of(pose, p) == *wanted);
+                let place = sides
+                    .predicted(polygons, &landmark.at, pose)
+                    .and_then(|place| obstacles[pose].nearest_free(&polygons[pose], place, is_allowed))
                     .ok_or_else(|| lacking(pose, &landmark.name, landmark.line))?;
                 obstacles[pose].add_point(place);
                 let as_written = as_used(scene, drawings, pose, place);

@@ -213,6 +213,9 @@ fn bare_mesh(
     let labels = Labels {
         points: landmarks.points.iter().map(|l| label(&l.name, l.line)).collect(),
         paths: landmarks.paths.iter().map(|l| label(&l.name, l.line)).collect(),
+        path_poses: (landmarks.paths.iter())
+            .map(|path| path.at.iter().position(Option::is_some).unwrap_or(0))
+            .collect(),
     };
     let mut refusal = PipelineError::stage(&[], None, "no polygon");
     for share in FINER_LINES {

@@ -18,6 +18,8 @@ pub enum Refinement {
 pub(super) struct Labels {
     pub(super) points: Vec<LandmarkLabel>,
     pub(super) paths: Vec<LandmarkLabel>,
+    /// For each path a pose in which it is drawn.
+    pub(super) path_poses: Vec<usize>,
 }
 
 /// How a message calls a landmark.
@@ -108,6 +110,10 @@ pub(super) fn refusal(names: &[String], labels: &Labels, error: TriangulateError
             first: label(first),
             second: label(second),
             pose: pose_name(pose),
+        },
+        TriangulateError::PathShort { path } => PipelineError::LandmarkClosed {
+            landmark: label(Feature::Path(path)),
+            pose: pose_name(labels.path_poses.get(path).copied().unwrap_or(0)),
         },
         TriangulateError::PathSides { path, pose } => PipelineError::LandmarkSides {
             landmark: label(Feature::Path(path)),

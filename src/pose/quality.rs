@@ -43,12 +43,14 @@ impl MeshQuality {
                 triangles.iter().map(between)
             })
             .collect();
-        stretches.sort_by(f64::total_cmp);
+        let largest = stretches.iter().copied().reduce(f64::max);
+        let middle = stretches.len() / 2;
+        let median = (!stretches.is_empty()).then(|| *stretches.select_nth_unstable_by(middle, f64::total_cmp).1);
         Self {
             smallest_angle_deg: angles.first().copied().unwrap_or(0.0),
             low_angle_deg: angles.get(angles.len() / 20).copied().unwrap_or(0.0),
-            median_stretch: stretches.get(stretches.len() / 2).copied().unwrap_or(1.0),
-            largest_stretch: stretches.last().copied().unwrap_or(1.0),
+            median_stretch: median.unwrap_or(1.0),
+            largest_stretch: largest.unwrap_or(1.0),
         }
     }
 }

@@ -6,6 +6,7 @@ use super::super::triangulate;
 use super::*;
 use crate::math::Point;
 use crate::mesh::validity::check_embedding;
+use crate::outline::testing::{Kinship, poses};
 use crate::outline::{Outline, Ring};
 
 /// A star-shaped polygon from its radii.
@@ -44,6 +45,27 @@ fn an_edge_length_out_of_range_is_refused() {
     }
     let refused = refine(&mesh, &RefineOptions::default().with_edge_length(f64::NAN));
     assert!(matches!(refused, Err(RefineError::BadEdgeLength { .. })));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(6))]
+    #[test]
+    fn refined_meshes_of_any_polygons_stay_embedded(
+        polygons in poses(3..20, 1..4, 0..3, Kinship::Strangers),
+        edge_length in 0.1..0.4f64,
+    ) {
+        let (mesh, _) = triangulate(&polygons, &[]).expect("triangulated");
+        let (refined, _) = refine(&mesh, &RefineOptions::default().with_edge_length(edge_length)).expect("refined");
+        let holes = polygons[0].holes().len() as i64;
+        prop_assert_eq!(refined.topology.euler_characteristic() as i64, 1 - holes);
+        for (pose, positions) in refined.positions.iter().enumerate() {
+            check_embedding(&refined.topology, positions, &refined.rings).expect("an embedding");
+            for (ring, given) in refined.rings.iter().zip(polygons[pose].rings()) {
+                let mut along = ring.iter().map(|&v| positions[v]);
+                prop_assert!(given.points().iter().all(|p| along.any(|q| q == *p)), "the ring is kept in order");
+            }
+        }
+    }
 }
 
 proptest! {

@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::math::predicate;
 use crate::outline::ArcLength;
+use crate::outline::testing::{Kinship, poses};
 
 /// A wavy closed curve around a point: `waves` bumps of the given height, `count` points.
 fn wavy(count: usize, waves: usize, height: f64, phase: f64) -> Outline {
@@ -112,6 +113,54 @@ proptest! {
                 .map(|&p| ArcLength::new(outline.outer()).nearest(p).1)
                 .fold(0.0, f64::max);
             prop_assert!(farthest <= 2.0 * tolerance * outline.diagonal());
+        }
+    }
+}
+
+/// By how much, over the diagonal, a ring of the outline lies on the wrong side of its ring of the polygon.
+fn leak(outline: &Outline, polygon: &Outline) -> f64 {
+    let rings = outline.rings().iter().zip(polygon.rings()).enumerate();
+    let worst = rings.flat_map(|(number, (ring, around))| {
+        ring.points().iter().map(move |p| {
+            let is_beyond = around.contains(*p) == (number > 0);
+            if is_beyond {
+                ArcLength::new(around).nearest(*p).1
+            } else {
+                0.0
+            }
+        })
+    });
+    worst.fold(0.0, f64::max) / outline.diagonal()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+    #[test]
+    fn any_outlines_are_enclosed_by_simple_polygons_that_correspond(
+        outlines in poses(3..201, 1..9, 0..3, Kinship::Strangers),
+        tolerance in 0.005..0.05f64,
+        landmarks in prop::collection::vec(0.0..1.0f64, 0..4),
+    ) {
+        let identity = |_| Correspondence::identity(outlines.len(), 64);
+        let correspondences: Vec<Correspondence> = outlines[0].rings().iter().map(identity).collect();
+        let pinned: Vec<Vec<f64>> = landmarks.iter().map(|&t| vec![t; outlines.len()]).collect();
+        let options = SimplifyOptions::default().with_tolerance(tolerance);
+        // `Outline::new` inside has already proven each polygon simple.
+        let simplified = simplify(&outlines, &correspondences, &pinned, &options).expect("simplified");
+        let counts = |polygon: &Outline| polygon.rings().iter().map(Ring::len).collect::<Vec<_>>();
+        for (outline, polygon) in outlines.iter().zip(&simplified.polygons) {
+            prop_assert_eq!(counts(polygon), counts(&simplified.polygons[0]));
+            let leaked = leak(outline, polygon);
+            prop_assert!(leaked < 1e-9, "leaks {leaked}");
+        }
+        for &t in &landmarks {
+            let place = |pose: usize| ArcLength::new(outlines[pose].outer()).at(t);
+            let is_there = |k: usize| {
+                simplified.polygons.iter().enumerate().all(|(pose, polygon)| {
+                    (polygon.outer().point(k) - place(pose)).norm() <= 1e-9 * outlines[pose].diagonal()
+                })
+            };
+            prop_assert!((0..simplified.polygons[0].outer().len()).any(is_there), "a landmark has its vertex in every pose");
         }
     }
 }

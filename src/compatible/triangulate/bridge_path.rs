@@ -66,14 +66,13 @@ pub(super) fn fewest_bends(
             .collect();
         drawn.sort_by(|a, b| (a.0).cmp(&b.0).then(a.1.total_cmp(&b.1)));
         for (bends, _, mut bridge) in drawn {
+            let ends = (bridge.from, bridge.to);
             let failed = (0..positions.len()).find(|&pose| {
-                let path = whole(&positions[pose], visits, bridge.from, bridge.to, &bridge.interior[pose]);
-                let is_clear = |path: &[Point]| is_clear(&positions[pose], visits, bridge.from, bridge.to, path);
-                let path = lengthened(path, bends);
-                let proven = is_clear(&path);
-                let path = if proven { nudged(path, is_clear) } else { path };
-                bridge.interior[pose] = path[1..path.len() - 1].to_vec();
-                !proven
+                match proven(&positions[pose], visits, ends, &bridge.interior[pose], bends) {
+                    Some(interior) => bridge.interior[pose] = interior,
+                    None => return true,
+                }
+                false
             });
             match failed {
                 None => return Ok(bridge),
@@ -87,6 +86,24 @@ pub(super) fn fewest_bends(
         }
     }
     Err(narrow)
+}
+
+/// The inner points of a path between two visits, `bends` of them, moved off the lines they were put on and proven;
+/// `None` if the path touches anything but its ends.
+pub(super) fn proven(
+    positions: &[Point],
+    visits: &Visits,
+    (from, to): (usize, usize),
+    interior: &[Point],
+    bends: usize,
+) -> Option<Vec<Point>> {
+    let is_clear = |path: &[Point]| is_clear(positions, visits, from, to, path);
+    let path = lengthened(whole(positions, visits, from, to, interior), bends);
+    if !is_clear(&path) {
+        return None;
+    }
+    let path = nudged(path, is_clear);
+    Some(path[1..path.len() - 1].to_vec())
 }
 
 /// All pairs that a path can join, the most promising first.

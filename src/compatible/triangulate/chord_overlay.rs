@@ -19,6 +19,7 @@ use std::collections::BTreeMap;
 
 use super::visibility::{Relation, Sight};
 use crate::math::{Point, point, predicate};
+use crate::solve::{SparseCholesky, Triplets};
 
 /// Jitters tried before giving up. One is enough unless a corridor is about as narrow as rounding.
 const ATTEMPTS: u64 = 4;
@@ -365,10 +366,16 @@ impl Arrangement {
     }
 }
 
+/// Larger systems are solved as sparse ones: dense ones are cubic, and a triangle may hold thousands of crossings.
+const LARGEST_DENSE: usize = 48;
+
 /// Solves for the free vertices in `list`: each is the mean of its neighbours.
 fn solve_tutte(places: &mut [Option<Point>], list: &[usize], neighbours: &BTreeMap<usize, Vec<usize>>) -> Option<()> {
     let index: BTreeMap<usize, usize> = list.iter().enumerate().map(|(k, &v)| (v, k)).collect();
     let size = list.len();
+    if size > LARGEST_DENSE {
+        return solve_sparse_tutte(places, list, &index, neighbours);
+    }
     let mut matrix = nalgebra::DMatrix::<f64>::zeros(size, size);
     let mut right = nalgebra::DMatrix::<f64>::zeros(size, 2);
     for (row, v) in list.iter().enumerate() {
@@ -387,6 +394,36 @@ fn solve_tutte(places: &mut [Option<Point>], list: &[usize], neighbours: &BTreeM
     let solution = matrix.cholesky()?.solve(&right);
     for (row, &v) in list.iter().enumerate() {
         places[v] = Some(Point::new(solution[(row, 0)], solution[(row, 1)]));
+    }
+    Some(())
+}
+
+/// As [`solve_tutte`].
+fn solve_sparse_tutte(
+    places: &mut [Option<Point>],
+    list: &[usize],
+    index: &BTreeMap<usize, usize>,
+    neighbours: &BTreeMap<usize, Vec<usize>>,
+) -> Option<()> {
+    let mut system = Triplets::new(list.len(), list.len());
+    let mut solution = vec![[0.0; 2]; list.len()];
+    for (row, v) in list.iter().enumerate() {
+        for w in &neighbours[v] {
+            system.add(row, row, 1.0);
+            match (places[*w], index.get(w)) {
+                (Some(p), _) => {
+                    solution[row][0] += p.x;
+                    solution[row][1] += p.y;
+                }
+                (None, Some(&column)) => system.add(row, column, -1.0),
+                (None, None) => return None,
+            }
+        }
+    }
+    let factor = SparseCholesky::new(&system.build()).ok()?;
+    factor.solve(&mut solution, &mut Vec::new()).ok()?;
+    for (&v, place) in list.iter().zip(solution) {
+        places[v] = Some(Point::from(place));
     }
     Some(())
 }

@@ -19,19 +19,19 @@ const PASSES: usize = 20;
 /// Rounds without any gain before the search ends.
 const IDLE_ROUNDS: usize = 8;
 
-/// Removes what interior vertices it can, but for what is to be kept; returns how many.
-pub(super) fn decimate(mesh: &mut EditableMesh, kept: &Kept) -> usize {
+/// Removes what interior vertices it can, but for what is to be kept, with so much work for the search; returns how many.
+pub(super) fn decimate(mesh: &mut EditableMesh, kept: &Kept, work: usize) -> usize {
     let mut removed = 0;
-    let mut resolver = Resolver::new(kept);
+    let mut resolver = Resolver::new(kept, work);
     let mut idle = 0;
     while idle < IDLE_ROUNDS {
         let saved = remove_all(mesh, kept.below) + resolver.resolve(mesh);
         removed += saved;
         idle = if saved > 0 { 0 } else { idle + 1 };
-        let Some(saved) = resolver.shake(mesh) else {
+        removed += resolver.shake(mesh);
+        if resolver.is_exhausted() {
             break;
-        };
-        removed += saved;
+        }
     }
     removed
 }

@@ -5,11 +5,13 @@
 //! 3. A *stuck* piece is one without any common diagonal. If all vertices see one point, that is its hub. Otherwise it is
 //!    divided over a hub in a few ways, each carried through to the end, and the one with the fewest Steiner points is
 //!    kept. Where all fail, because the parts become too narrow for double precision, or where there is no hub, it is
-//!    divided over a path, or else the overlay takes over: for the piece that is stuck, not for the one it came from.
+//!    divided over a path, or else the overlay takes over: for the piece that is stuck, not for the one it came from. A
+//!    large piece is divided over a path through its middle first, which costs less than its overlay would.
 //!
 //! Cost: O(m^2) N for the visibility of m vertices in N poses, twice that in all while large pieces are halved.
 
 use super::chord_overlay;
+use super::halving_path;
 use super::line_of_sight;
 use super::link_path::{self, LinkPath};
 use super::single_steiner::{self, Hub};
@@ -29,6 +31,10 @@ pub(super) enum Effort {
 /// Larger pieces are divided along one good diagonal after another; in smaller ones all sets of diagonals compete, by
 /// dynamic programming that is cubic in their vertices.
 const LARGEST_PIECE: usize = 256;
+
+/// Larger pieces are divided over a path before they are overlaid, which would be cubic in them. In smaller ones the paths
+/// cost about as many Steiner points as they save.
+const LARGEST_OVERLAY: usize = LARGEST_PIECE;
 
 /// Divisions of a stuck piece that are carried through to the end.
 const HUBS_TRIED: usize = 4;
@@ -94,16 +100,17 @@ impl Division {
             }
             let sights = visibility::look(&self.positions, &piece).map_err(|pose| self.too_narrow(&piece, pose))?;
             let common = visibility::common_pairs(&sights);
-            if piece.len() > LARGEST_PIECE
-                && let Some((i, j)) = line_of_sight::balanced_diagonal(
+            if piece.len() > LARGEST_PIECE {
+                let diagonal = line_of_sight::balanced_diagonal(
                     piece.len(),
                     &common,
                     |i, j| relative_length(&sights, i, j),
                     |i, j| is_clear(&sights, i, j),
-                )
-            {
-                pieces.push(chain(&piece, i, j));
-                pieces.push(chain(&piece, j, i));
+                );
+                match diagonal {
+                    Some((i, j)) => pieces.extend([chain(&piece, i, j), chain(&piece, j, i)]),
+                    None => self.solve_stuck(&piece, &sights)?,
+                }
                 continue;
             }
             let quality = |triangle| visibility::worst_angle_rad(&sights, triangle);
@@ -162,9 +169,12 @@ impl Division {
             self.put(best);
             return Ok(());
         }
-        if self.effort == Effort::Thorough
-            && let Some(path) = link_path::shortest_path(sights)
-        {
+        let path = match self.effort {
+            _ if piece.len() > LARGEST_OVERLAY => halving_path::halving_path(&self.positions, piece),
+            Effort::Thorough => link_path::shortest_path(sights),
+            Effort::Quick(_) => None,
+        };
+        if let Some(path) = path {
             if self.solve_over_path(piece, &path).is_ok() {
                 return Ok(());
             }

@@ -201,24 +201,25 @@ pub(super) fn balanced_diagonal(
     is_clear: impl Fn(usize, usize) -> bool,
 ) -> Option<(usize, usize)> {
     let completable = Completable::new(count, common);
-    let mut candidates: Vec<(usize, f64, usize, usize)> = Vec::new();
+    // One at a time: all pairs together would be most of the memory.
+    let mut best: Option<(usize, f64, (usize, usize))> = None;
     for i in 0..count {
         for j in i + 2..count {
-            if (i, j) != (0, count - 1) && common.get(i, j) && completable.allows(i, j) {
-                let smaller = (j - i).min(count - (j - i));
-                candidates.push((smaller.min(count / 4), cost(i, j), i, j));
+            if (i, j) == (0, count - 1) || !common.get(i, j) || !completable.allows(i, j) {
+                continue;
+            }
+            let evenness = (j - i).min(count - (j - i)).min(count / 4);
+            if best.is_some_and(|best| best.0 > evenness) {
+                continue;
+            }
+            let cost = cost(i, j);
+            let is_better = best.is_none_or(|best| best.0 < evenness || cost < best.1);
+            if is_better && is_clear(i, j) {
+                best = Some((evenness, cost, (i, j)));
             }
         }
     }
-    candidates.sort_by(|a, b| {
-        b.0.cmp(&a.0)
-            .then(a.1.total_cmp(&b.1))
-            .then((a.2, a.3).cmp(&(b.2, b.3)))
-    });
-    candidates
-        .into_iter()
-        .map(|(_, _, i, j)| (i, j))
-        .find(|&(i, j)| is_clear(i, j))
+    best.map(|(_, _, diagonal)| diagonal)
 }
 
 /// Larger polygons are divided without knowing whether a complete triangulation is lost by it.

@@ -177,8 +177,9 @@ impl<'a> LinkGraph<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::visibility::tests::{scattered, sight_of, untangled};
+    use super::super::visibility::tests::sight_of;
     use super::*;
+    use crate::outline::testing::rings;
     use proptest::prelude::*;
 
     /// A corridor with right-angled bends: a staircase of unit width.
@@ -284,10 +285,18 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(12))]
         #[test]
-        fn link_distances_are_close_to_those_over_a_fine_grid(points in scattered(4..12), from in 0_usize..12) {
-            let points = untangled(points);
-            prop_assume!(points.is_some());
-            let points = points.expect("assumed");
+        fn link_distances_are_close_to_those_over_a_fine_grid(points in rings(4..12), from in 0_usize..12) {
+            assert_close_to_the_grid(&points, from % points.len());
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4))]
+        #[test]
+        fn link_distances_of_large_polygons_are_close_to_those_over_a_fine_grid(
+            points in rings(12..LARGEST_POLYGON + 1),
+            from in 0_usize..LARGEST_POLYGON,
+        ) {
             assert_close_to_the_grid(&points, from % points.len());
         }
     }

@@ -10,7 +10,8 @@
 //! 1. triangulated with diagonals that have line of sight in all poses, or divided by those that leave the least to
 //!    Steiner points ([`line_of_sight`]); what has none left is
 //! 2. divided by a Steiner point that several vertices see in all poses ([`single_steiner`]), or
-//! 3. divided by a path of several Steiner points ([`link_path`]), or, if no such path shrinks it,
+//! 3. divided by a path of several Steiner points ([`link_path`], of a large piece [`halving_path`]), or, if no such
+//!    path shrinks it,
 //! 4. triangulated as the overlay of the poses' own triangulations on a convex polygon ([`chord_overlay`]), which
 //!    always exists.
 //!
@@ -34,6 +35,7 @@ mod division;
 mod ear_clipping;
 mod features;
 mod free_space;
+mod halving_path;
 mod line_of_sight;
 mod link_path;
 mod patch;
@@ -202,6 +204,15 @@ pub fn triangulate_features(
     polygons: &[Outline],
     features: &Features,
 ) -> Result<(CompatibleMesh, TriangulateReport), TriangulateError> {
+    searched(polygons, features, patch::WORK)
+}
+
+/// As [`triangulate_features`], with so much work at most for the search of [`patch`].
+fn searched(
+    polygons: &[Outline],
+    features: &Features,
+    work: usize,
+) -> Result<(CompatibleMesh, TriangulateReport), TriangulateError> {
     let first = polygons.first().ok_or(TriangulateError::NoPose)?;
     for (pose, polygon) in polygons.iter().enumerate() {
         for ring in 0..first.rings().len().max(polygon.rings().len()) {
@@ -247,7 +258,7 @@ pub fn triangulate_features(
         below: numbered.count,
         edges: numbered.paths.iter().flat_map(along).collect(),
     };
-    report.decimated = decimate::decimate(&mut mesh, &kept);
+    report.decimated = decimate::decimate(&mut mesh, &kept, work);
     let steiner = report.bridge + report.single + report.link + report.overlay - report.decimated;
     let curves = Curves {
         rings,

@@ -24,7 +24,7 @@ const WIDENED: std::ops::RangeInclusive<usize> = 1..=4;
 const LARGEST_RING: usize = 64;
 
 /// The work that may be spent, in cubes of the vertices of a patch times poses; about a second.
-const WORK: usize = 10_000_000;
+pub(super) const WORK: usize = 10_000_000;
 
 /// Steiner points of a patch that is solved with as many, at most.
 const LARGEST_SHAKEN: usize = 4;
@@ -63,6 +63,7 @@ pub(super) struct Resolver<'a> {
     /// Per polygon without a better solution, with how many vertices none was found. The vertices of a mesh never move
     /// and their numbers are not used again, so a polygon stands for its patch.
     failed: BTreeMap<Vec<usize>, usize>,
+    /// What is left of the work.
     work: usize,
     /// Whether a patch was left because of the work.
     is_exhausted: bool,
@@ -70,11 +71,11 @@ pub(super) struct Resolver<'a> {
 }
 
 impl<'a> Resolver<'a> {
-    pub(super) fn new(kept: &'a Kept) -> Self {
+    pub(super) fn new(kept: &'a Kept, work: usize) -> Self {
         Self {
             kept,
             failed: BTreeMap::new(),
-            work: 0,
+            work,
             is_exhausted: false,
             state: 0,
         }
@@ -116,8 +117,8 @@ impl<'a> Resolver<'a> {
     }
 
     /// Solves patches anew with as many vertices as they have, so that neighbouring ones may find a better solution;
-    /// returns how many vertices that saved by chance, or `None` when the work is used up.
-    pub(super) fn shake(&mut self, mesh: &mut EditableMesh) -> Option<usize> {
+    /// returns how many vertices that saved by chance.
+    pub(super) fn shake(&mut self, mesh: &mut EditableMesh) -> usize {
         let mut saved = 0;
         for vertex in self.kept.below..mesh.vertex_count() {
             if mesh.degree(vertex) == 0 {
@@ -136,7 +137,12 @@ impl<'a> Resolver<'a> {
                 self.resolve_patch(mesh, patch, equal, variant)
             });
         }
-        (!self.is_exhausted).then_some(saved)
+        saved
+    }
+
+    /// Whether a patch was left because the work is used up.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.is_exhausted
     }
 
     /// A number that looks random: a fixed linear congruential sequence (Knuth's MMIX constants).
@@ -221,11 +227,11 @@ impl<'a> Resolver<'a> {
         if known || ring.len() > LARGEST_RING {
             return 0;
         }
-        if self.work + work > WORK {
+        let Some(left) = self.work.checked_sub(work) else {
             self.is_exhausted = true;
             return 0;
-        }
-        self.work += work;
+        };
+        self.work = left;
         let Some(solution) = solve(mesh, &ring, allowance, variant) else {
             if variant == 0 {
                 self.failed.insert(ring, allowance);
@@ -348,11 +354,36 @@ mod tests {
     fn a_needless_hub_is_taken_out_of_its_patch() {
         let mut mesh = wheel();
         let kept = below(6);
-        let mut resolver = Resolver::new(&kept);
+        let mut resolver = Resolver::new(&kept, WORK);
         let patch = resolver.patch_around(&mesh, 6, 1, Extent::Stars, 0).expect("a disc");
         assert_eq!((patch.ring.len(), &patch.inner[..]), (6, &[6][..]));
         assert_eq!(resolver.resolve_patch(&mut mesh, patch, 0, 0), 1);
         assert_eq!((mesh.triangles().count(), mesh.degree(6)), (4, 0));
+    }
+
+    /// What the last round saved, in which the work was used up, was not counted once.
+    #[test]
+    fn what_is_saved_before_the_work_is_used_up_counts() {
+        let hubs = 12;
+        let mut positions: Vec<Point> = Vec::new();
+        let mut triangles = Vec::new();
+        for wheel in 0..hubs {
+            let middle = Point::new(4.0 * wheel as f64, 0.0);
+            let rim = (0..6).map(|k| f64::from(k) * std::f64::consts::FRAC_PI_3);
+            positions.extend(rim.map(|angle| middle + Point::new(angle.cos(), angle.sin())));
+            triangles.extend((0..6).map(|k| [6 * wheel + k, 6 * wheel + (k + 1) % 6, 6 * hubs + wheel]));
+        }
+        positions.extend((0..hubs).map(|wheel| Point::new(4.0 * wheel as f64, 0.0)));
+        let mut mesh = EditableMesh::new(vec![positions], &triangles);
+        let kept = below(6 * hubs);
+        // Enough for two hexagons and a half.
+        let mut resolver = Resolver::new(&kept, 5 * 6usize.pow(3) / 2);
+        let mut saved = 0;
+        while !resolver.is_exhausted() {
+            saved += resolver.shake(&mut mesh);
+        }
+        let gone = (6 * hubs..7 * hubs).filter(|&hub| mesh.degree(hub) == 0).count();
+        assert_eq!((saved, gone), (2, 2));
     }
 
     #[test]
@@ -360,7 +391,7 @@ mod tests {
         let mesh = wheel();
         let kept = below(7);
         assert!(
-            Resolver::new(&kept)
+            Resolver::new(&kept, WORK)
                 .patch_around(&mesh, 6, 1, Extent::Widened, 0)
                 .is_none()
         );

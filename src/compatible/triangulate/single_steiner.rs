@@ -19,7 +19,7 @@ use crate::math::{Point, point, predicate};
 const CANDIDATES: usize = 64;
 
 /// How many starting pairs are tried, those with the roomiest common region first; fewer in larger polygons, in
-/// proportion.
+/// proportion, but never fewer than in a narrow search.
 const STARTING_PAIRS: usize = 150;
 
 /// Likewise in a narrow search.
@@ -90,7 +90,7 @@ pub(super) fn hubs(sights: &[Sight], search: Search, most: usize) -> Vec<Hub> {
     }
     starts.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let (skipped, taken) = match search {
-        Search::Wide => (0, STARTING_PAIRS / (stride * stride)),
+        Search::Wide => (0, (STARTING_PAIRS / (stride * stride)).max(FEW_STARTING_PAIRS)),
         Search::Narrow(variant) => (
             variant * FEW_STARTING_PAIRS % starts.len().max(1),
             FEW_STARTING_PAIRS.min(starts.len()),

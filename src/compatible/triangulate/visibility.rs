@@ -230,6 +230,7 @@ pub(super) fn worst_angle_rad(sights: &[Sight], triangle: [usize; 3]) -> f64 {
 pub(super) mod tests {
     use super::super::ear_clipping::triangulate_polygon;
     use super::*;
+    use crate::outline::testing::rings;
     use proptest::prelude::*;
 
     pub(in super::super) fn sight_of(points: Vec<Point>) -> Sight {
@@ -246,38 +247,6 @@ pub(super) mod tests {
             .enumerate()
             .map(|(k, r)| Point::new(r * angle(k).cos(), r * angle(k).sin()))
             .collect()
-    }
-
-    /// A simple polygon through the points in some order: crossing edges are uncrossed until none are left. `None` for
-    /// points that allow no positive simple polygon by that, as several at one place.
-    pub(in super::super) fn untangled(mut points: Vec<Point>) -> Option<Vec<Point>> {
-        let count = points.len();
-        for _ in 0..40 * count * count {
-            let tangle = (0..count).find_map(|i| {
-                (i + 2..count).filter(|&j| (i, j) != (0, count - 1)).find_map(|j| {
-                    let (a, b, c, d) = (points[i], points[i + 1], points[j], points[(j + 1) % count]);
-                    predicate::touch(a, b, c, d).then_some((i, j))
-                })
-            });
-            let Some((i, j)) = tangle else {
-                let area: f64 = (0..count)
-                    .map(|k| point::cross(points[k], points[(k + 1) % count]))
-                    .sum();
-                if area < 0.0 {
-                    points.reverse();
-                }
-                return (area != 0.0).then_some(points);
-            };
-            points[i + 1..=j].reverse();
-        }
-        None
-    }
-
-    /// Points for [`untangled`].
-    pub(in super::super) fn scattered(
-        count: impl Into<prop::collection::SizeRange>,
-    ) -> impl Strategy<Value = Vec<Point>> {
-        prop::collection::vec((0.0..1.0f64, 0.0..1.0f64).prop_map(|(x, y)| Point::new(x, y)), count)
     }
 
     /// The definition, in O(m^3): no edge touched but at the ends, and inside near the start.
@@ -321,6 +290,20 @@ pub(super) mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(6))]
+        #[test]
+        fn agrees_with_the_definition_on_large_polygons(points in rings(24..201)) {
+            let sight = sight_of(points.clone());
+            let expected = naive(&points);
+            prop_assert_eq!(&sight.visible_pairs(), &expected);
+            for vertex in (0..points.len()).step_by(7) {
+                let seen: Vec<usize> = (0..points.len()).filter(|&v| v != vertex && expected.get(vertex, v)).collect();
+                prop_assert_eq!(sight.seen_from(vertex), seen);
+            }
+        }
+    }
+
+    proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
         #[test]
         fn agrees_with_the_definition(radii in prop::collection::vec(0.1..1.0f64, 4..24)) {
@@ -329,10 +312,7 @@ pub(super) mod tests {
         }
 
         #[test]
-        fn agrees_with_the_definition_on_any_polygon(points in scattered(4..24)) {
-            let points = untangled(points);
-            prop_assume!(points.is_some());
-            let points = points.expect("assumed");
+        fn agrees_with_the_definition_on_any_polygon(points in rings(3..24)) {
             prop_assert_eq!(sight_of(points.clone()).visible_pairs(), naive(&points));
         }
 

@@ -131,10 +131,10 @@ impl Sections {
     }
 
     /// The mean mismatch per unit of length from link `k` to the next one, by `k`; of the reference, the largest of any
-    /// pose.
+    /// pose. Empty for a pose that is not there.
     #[must_use]
     pub fn costs(&self, pose: usize) -> &[f64] {
-        &self.costs[pose]
+        self.costs.get(pose).map_or(&[], Vec::as_slice)
     }
 
     /// The section of a pose that costs most: from that link to the next one.

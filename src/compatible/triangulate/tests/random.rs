@@ -2,27 +2,18 @@
 
 use proptest::prelude::*;
 
-use super::super::visibility::tests::{scattered, star, untangled};
+use super::super::visibility::tests::star;
 use super::super::*;
 use super::{polygon, prove, spiral};
+use crate::mesh::geometry;
 use crate::outline::Ring;
-
-/// Numbers in [0, 1) that look random, from a fixed linear congruential sequence.
-fn sequence(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
+use crate::outline::testing::{Kinship, Recipe, Sequence, outlines, poses, untangled};
 
 fn random_polygons(count: usize, poses: usize, seed: u64) -> Vec<Outline> {
-    let mut random = sequence(seed);
+    let mut random = Sequence::new(seed);
     (0..poses)
         .map(|_| {
-            let points = (0..count).map(|_| Point::new(random(), random())).collect();
+            let points = (0..count).map(|_| Point::new(random.next(), random.next())).collect();
             polygon(untangled(points).expect("points in general position"))
         })
         .collect()
@@ -119,31 +110,65 @@ fn two_holes_in_a_plate_that_bends() {
     prove(&mesh, &polygons);
 }
 
+/// How much of the search is worth its time here: the meshes are as valid without.
+const LITTLE_WORK: usize = 100_000;
+
+/// Triangulates and proves everything that is promised of the mesh.
+fn prove_all(polygons: &[Outline], work: usize) {
+    let (mesh, _) = searched(polygons, &Features::default(), work).expect("triangulated");
+    prove(&mesh, polygons);
+    for (positions, polygon) in mesh.positions.iter().zip(polygons) {
+        let triangles = mesh.topology.triangles().iter();
+        let covered: f64 = triangles
+            .map(|&t| geometry::signed_area(geometry::corners(positions, t)))
+            .sum();
+        let area = polygon.area();
+        assert!((covered - area).abs() <= 1e-9 * area, "{covered} of {area} is covered");
+    }
+}
+
+/// Pieces this large have no table of all their diagonals, nor an overlay of their own.
+#[test]
+fn large_polygons_without_common_diagonals_are_divided_over_paths() {
+    let mut turned = spiral(160, 1.3);
+    turned.rotate_left(80);
+    let mirrored = spiral(160, 1.3).into_iter().map(|p| Point::new(p.x, -p.y)).rev();
+    let polygons = vec![
+        polygon(spiral(160, 1.3)),
+        polygon(turned),
+        polygon(mirrored.collect()),
+    ];
+    let (mesh, report) = searched(&polygons, &Features::default(), 0).expect("triangulated");
+    prove(&mesh, &polygons);
+    assert!(report.link > 0, "{report:?}");
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(16))]
+    #![proptest_config(ProptestConfig::with_cases(12))]
     #[test]
-    fn any_simple_polygons_are_triangulated(
-        points in (3_usize..14, 2_usize..9).prop_flat_map(|(n, poses)| prop::collection::vec(scattered(n), poses)),
-    ) {
-        let polygons: Option<Vec<Vec<Point>>> = points.into_iter().map(untangled).collect();
-        prop_assume!(polygons.is_some());
-        let polygons: Vec<Outline> = polygons.expect("assumed").into_iter().map(polygon).collect();
-        let (mesh, _) = triangulate(&polygons, &[]).expect("triangulated");
-        prove(&mesh, &polygons);
+    fn any_simple_polygons_are_triangulated(polygons in poses(3..16, 2..9, 0..1, Kinship::Strangers)) {
+        prove_all(&polygons, patch::WORK);
     }
 
     #[test]
-    fn polygons_of_up_to_two_hundred_vertices_that_differ_a_little_are_triangulated(
-        radii in prop::collection::vec(0.5..1.0f64, 3..200),
-        poses in 2_usize..9,
-        amount in 0.0..0.1f64,
-        seed in 0_u64..1000,
+    fn any_simple_polygons_with_holes_are_triangulated(polygons in poses(3..12, 1..6, 1..4, Kinship::Strangers)) {
+        prove_all(&polygons, LITTLE_WORK);
+    }
+
+    #[test]
+    fn related_polygons_of_up_to_two_hundred_vertices_are_triangulated(
+        polygons in poses(16..201, 1..9, 0..4, Kinship::Relatives),
     ) {
-        let mut random = sequence(seed);
-        let polygons: Vec<Outline> = (0..poses)
-            .map(|_| polygon(star(&radii.iter().map(|r| r * (1.0 + amount * random())).collect::<Vec<_>>())))
-            .collect();
-        let (mesh, _) = triangulate(&polygons, &[]).expect("triangulated");
-        prove(&mesh, &polygons);
+        prove_all(&polygons, LITTLE_WORK);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(3))]
+    #[test]
+    fn unrelated_polygons_of_up_to_two_hundred_vertices_are_triangulated(
+        polygons in poses(16..201, 2..4, 0..2, Kinship::Strangers),
+    ) {
+        prove_all(&polygons, LITTLE_WORK);
     }
 }
