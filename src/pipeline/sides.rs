@@ -97,7 +97,7 @@ mod tests {
         let polygons = [square(), square()];
         let mut sides = Sides::default();
         // From corner to corner, straight in one pose and bent in the other.
-        sides.add_line(&polygons, [0, 2], &[vec![Point::new(4.0, 4.0), Point::new(1.0, 7.0)]]);
+        sides.add_line(&polygons, [0, 2], &[vec![Point::new(4.0, 4.0), Point::new(2.5, 5.5)]]);
         let place = Point::new(3.0, 5.0);
         let places = [Some(place), None];
         let plain = inside::predicted(&polygons, &places, 1).expect("carried");

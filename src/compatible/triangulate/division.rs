@@ -39,6 +39,10 @@ const LARGEST_OVERLAY: usize = LARGEST_PIECE;
 /// Divisions of a stuck piece that are carried through to the end.
 const HUBS_TRIED: usize = 4;
 
+/// In pieces whose overlay may have more crossings than this one division is carried through, not several: each of them
+/// is likely to end in overlays.
+const MOST_CROSSINGS: usize = 100_000;
+
 /// The state: all vertices so far, and the triangles that are settled.
 #[derive(Debug)]
 pub(super) struct Division {
@@ -148,6 +152,7 @@ impl Division {
         let allowed = self.most_vertices;
         let mut best: Option<Solution> = None;
         let (effort, tried) = match self.effort {
+            Effort::Thorough if self.most_crossings(piece) > MOST_CROSSINGS => (single_steiner::Search::Wide, 1),
             Effort::Thorough => (single_steiner::Search::Wide, HUBS_TRIED),
             Effort::Quick(variant) => (single_steiner::Search::Narrow(variant), 1),
         };
@@ -234,6 +239,12 @@ impl Division {
         };
         self.triangles.extend(overlay.triangles.iter().map(|t| t.map(global)));
         Ok(())
+    }
+
+    /// What an overlay of the piece is bounded by: pairs of poses times pairs of diagonals.
+    fn most_crossings(&self, piece: &[usize]) -> usize {
+        let poses = self.positions.len();
+        poses * poses.saturating_sub(1) / 2 * piece.len().pow(2)
     }
 
     fn vertex_count(&self) -> usize {

@@ -133,18 +133,14 @@ fn large_polygons_without_common_diagonals_are_divided_over_paths() {
     let mut turned = spiral(160, 1.3);
     turned.rotate_left(80);
     let mirrored = spiral(160, 1.3).into_iter().map(|p| Point::new(p.x, -p.y)).rev();
-    let polygons = vec![
-        polygon(spiral(160, 1.3)),
-        polygon(turned),
-        polygon(mirrored.collect()),
-    ];
+    let polygons = vec![polygon(spiral(160, 1.3)), polygon(turned), polygon(mirrored.collect())];
     let (mesh, report) = searched(&polygons, &Features::default(), 0).expect("triangulated");
     prove(&mesh, &polygons);
     assert!(report.link > 0, "{report:?}");
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(ProptestConfig::with_cases(6))]
     #[test]
     fn any_simple_polygons_are_triangulated(polygons in poses(3..16, 2..9, 0..1, Kinship::Strangers)) {
         prove_all(&polygons, patch::WORK);
@@ -164,7 +160,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(3))]
+    #![proptest_config(ProptestConfig::with_cases(2))]
     #[test]
     fn unrelated_polygons_of_up_to_two_hundred_vertices_are_triangulated(
         polygons in poses(16..201, 2..4, 0..2, Kinship::Strangers),
