@@ -146,7 +146,12 @@ proptest! {
         let pinned: Vec<Vec<f64>> = landmarks.iter().map(|&t| vec![t; outlines.len()]).collect();
         let options = SimplifyOptions::default().with_tolerance(tolerance);
         // `Outline::new` inside has already proven each polygon simple.
-        let simplified = simplify(&outlines, &correspondences, &pinned, &options).expect("simplified");
+        let simplified = match simplify(&outlines, &correspondences, &pinned, &options) {
+            Ok(simplified) => simplified,
+            // Outlines that have nothing in common may leave less than a triangle, which is refused.
+            Err(SimplifyError::Degenerate { .. }) => return Ok(()),
+            Err(error) => return Err(TestCaseError::fail(error.to_string())),
+        };
         let counts = |polygon: &Outline| polygon.rings().iter().map(Ring::len).collect::<Vec<_>>();
         for (outline, polygon) in outlines.iter().zip(&simplified.polygons) {
             prop_assert_eq!(counts(polygon), counts(&simplified.polygons[0]));

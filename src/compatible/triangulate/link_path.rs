@@ -290,15 +290,4 @@ mod tests {
             assert_close_to_the_grid(&points, from % points.len());
         }
     }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(4))]
-        #[test]
-        fn link_distances_of_large_polygons_are_close_to_those_over_a_fine_grid(
-            points in rings(12..LARGEST_POLYGON + 1),
-            from in 0_usize..LARGEST_POLYGON,
-        ) {
-            assert_close_to_the_grid(&points, from % points.len());
-        }
-    }
 }

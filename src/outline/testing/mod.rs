@@ -10,7 +10,7 @@
 mod polygon;
 mod shrink;
 
-pub(crate) use polygon::{grown, scattered, untangled, walked};
+pub(crate) use polygon::{grown, untangled, walked};
 pub(crate) use shrink::Shrinking;
 
 use proptest::prelude::*;

@@ -1,7 +1,5 @@
 //! Random simple polygons, every decision exact.
 
-use proptest::prelude::*;
-
 use super::Sequence;
 use crate::math::{Point, point, predicate};
 
@@ -68,11 +66,6 @@ fn is_free(points: &[Point], edge: usize) -> bool {
             !(boxes_meet(a, b, c, d) && predicate::touch(a, b, c, d))
         }
     })
-}
-
-/// Points for [`untangled`].
-pub(crate) fn scattered(count: impl Into<prop::collection::SizeRange>) -> impl Strategy<Value = Vec<Point>> {
-    prop::collection::vec((0.0..1.0f64, 0.0..1.0f64).prop_map(|(x, y)| Point::new(x, y)), count)
 }
 
 /// A polygon that grows from a triangle: one random edge after another is bent to a random point beside it, so far as

@@ -7,7 +7,7 @@ use super::super::*;
 use super::{polygon, prove, spiral};
 use crate::mesh::geometry;
 use crate::outline::Ring;
-use crate::outline::testing::{Kinship, Recipe, Sequence, outlines, poses, untangled};
+use crate::outline::testing::{Kinship, Sequence, poses, untangled};
 
 fn random_polygons(count: usize, poses: usize, seed: u64) -> Vec<Outline> {
     let mut random = Sequence::new(seed);
