@@ -10,8 +10,10 @@
 //! Where two ways are open, the pose takes the one that deviates less from its outline. A tuple can be removed when
 //! every pose has a way. Holes need no rule of their own: they run the other way round, so that the shape is on the
 //! left of every edge, and "reflex" means a right turn for all rings alike.
+//!
+//! A landmark stays where it is: of an edge that ends in one only the other end may go.
 
-use std::cmp::Reverse;
+use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
 use super::edge_grid::EdgeGrid;
@@ -23,12 +25,16 @@ use crate::outline::{ArcLength, Ring};
 /// were interpolated on an edge lie off it by rounding, a few 1e-16.
 const STRAIGHT: f64 = 1e-14;
 
+/// The share of its area that a hole keeps at least. One that is no larger than the tolerance would become a line.
+const LEAST_HOLE: f64 = 0.01;
+
 /// The full-resolution ring that a simplified ring must enclose and stay close to.
 #[derive(Debug)]
 pub(super) struct OriginalRing {
     points: Vec<Point>,
     parameters: Vec<f64>,
     longest_edge: f64,
+    doubled_area: f64,
 }
 
 impl OriginalRing {
@@ -38,6 +44,7 @@ impl OriginalRing {
             points: ring.points().to_vec(),
             parameters,
             longest_edge: ring.edges().map(|(a, b)| (b - a).norm()).fold(0.0, f64::max),
+            doubled_area: 2.0 * ring.signed_area(),
         }
     }
 
@@ -101,13 +108,13 @@ struct Queued {
 impl Eq for Queued {}
 
 impl PartialOrd for Queued {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
 impl Ord for Queued {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+    fn cmp(&self, other: &Self) -> Ordering {
         self.cost
             .total_cmp(&other.cost)
             .then(self.vertex.cmp(&other.vertex))
@@ -128,6 +135,8 @@ pub(super) struct Collapser<'a> {
     alive: Vec<bool>,
     stamps: Vec<u32>,
     ring_sizes: Vec<usize>,
+    /// Twice the signed area of each ring of each pose (#poses x #rings).
+    areas: Vec<Vec<f64>>,
     grids: Vec<EdgeGrid>,
     /// Per tuple, what the cost of the edge that starts there is multiplied by; none where there are no tuples.
     weights: &'a [f64],
@@ -147,10 +156,16 @@ impl<'a> Collapser<'a> {
             alive: vec![true; total],
             stamps: vec![0; total],
             ring_sizes: rings.iter().map(|ring| ring.tuples.len()).collect(),
+            areas: Vec::with_capacity(originals.len()),
             grids: Vec::with_capacity(originals.len()),
             weights: &[],
             queue: BinaryHeap::with_capacity(2 * total),
         };
+        for pose in 0..originals.len() {
+            collapser
+                .areas
+                .push(rings.iter().map(|ring| ring.doubled_area(pose)).collect());
+        }
         for (index, ring) in rings.into_iter().enumerate() {
             let (start, count) = (collapser.tuples.len(), ring.tuples.len());
             for k in 0..count {
@@ -233,6 +248,10 @@ impl<'a> Collapser<'a> {
         self.tuples[vertex].points[pose]
     }
 
+    fn is_landmark(&self, vertex: usize) -> bool {
+        self.tuples[vertex].landmark.is_some()
+    }
+
     fn enqueue(&mut self, b: usize) {
         self.stamps[b] += 1;
         if let Some((cost, _)) = self.candidate(b) {
@@ -251,18 +270,13 @@ impl<'a> Collapser<'a> {
     /// between equals.
     fn candidate(&self, b: usize) -> Option<(f64, Vec<Merge>)> {
         let c = self.next[b];
-        if self.ring_sizes[self.ring_of[b]] <= 3 || (self.tuples[b].pinned && self.tuples[c].pinned) {
+        if self.ring_sizes[self.ring_of[b]] <= 3 || (self.is_landmark(b) && self.is_landmark(c)) {
             return None;
         }
         let mut merges = Vec::with_capacity(self.originals.len());
         let (mut worst, mut sum) = (0.0_f64, 0.0);
         for pose in 0..self.originals.len() {
-            let mut merge = self.merge(pose, b)?;
-            for pinned in [b, c] {
-                if self.tuples[pinned].pinned {
-                    merge.parameter = self.tuples[pinned].parameters[pose];
-                }
-            }
+            let merge = self.merge(pose, b)?;
             let relative = merge.deviation / self.originals[pose].size;
             worst = worst.max(relative * relative);
             sum += relative * relative;
@@ -293,21 +307,23 @@ impl<'a> Collapser<'a> {
                 best = Some(merge);
             }
         };
-        if can_drop(pa, pb, pc) {
+        let (keeps_b, keeps_c) = (self.is_landmark(b), self.is_landmark(c));
+        if !keeps_b && can_drop(pa, pb, pc) {
             offer(Merge {
                 point: pc,
                 parameter: tc,
                 deviation: ring.deviation((ta, tc), pa, pc, limit),
             });
         }
-        if can_drop(pb, pc, pd) {
+        if !keeps_c && can_drop(pb, pc, pd) {
             offer(Merge {
                 point: pb,
                 parameter: tb,
                 deviation: ring.deviation((tb, td), pb, pd, limit),
             });
         }
-        if predicate::is_positive(pa, pb, pc) && predicate::is_positive(pb, pc, pd) {
+        let both_convex = predicate::is_positive(pa, pb, pc) && predicate::is_positive(pb, pc, pd);
+        if both_convex && !keeps_b && !keeps_c {
             let (into, out) = (pb - pa, pd - pc);
             let denominator = point::cross(into, out);
             if denominator > 0.0 {
@@ -366,13 +382,18 @@ impl<'a> Collapser<'a> {
         if !(at > 0.0 && at < span) {
             return false;
         }
-        if self.ring_sizes[self.ring_of[b]] == 4 {
+        let ring = self.ring_of[b];
+        if self.ring_sizes[ring] == 4 {
             // What is left is the triangle of three: it must keep the sense of its ring.
-            let positive = predicate::is_positive(pa, apex, pd);
-            let outer = self.ring_of[b] == 0;
-            if positive != outer {
+            let sense = if ring == 0 { Ordering::Greater } else { Ordering::Less };
+            if predicate::orientation(pa, apex, pd) != sense {
                 return false;
             }
+        }
+        // Holes run the other way round: their areas are negative.
+        let least = LEAST_HOLE * self.originals[pose].rings[ring].doubled_area;
+        if ring > 0 && self.areas[pose][ring] + gained_area([pa, pb, pc, pd], apex) > least {
+            return false;
         }
         let swept_first = swept(pa, pb, apex);
         let swept_second = swept(apex, pc, pd);
@@ -403,6 +424,7 @@ impl<'a> Collapser<'a> {
         let d = self.next[c];
         for (pose, merge) in merges.iter().enumerate() {
             let [pa, pb, pc, pd] = [a, b, c, d].map(|v| self.point(pose, v));
+            self.areas[pose][self.ring_of[b]] += gained_area([pa, pb, pc, pd], merge.point);
             let grid = &mut self.grids[pose];
             grid.remove(a, pa, pb);
             grid.remove(b, pb, pc);
@@ -412,7 +434,7 @@ impl<'a> Collapser<'a> {
             self.tuples[b].points[pose] = merge.point;
             self.tuples[b].parameters[pose] = merge.parameter;
         }
-        self.tuples[b].pinned |= self.tuples[c].pinned;
+        self.tuples[b].landmark = self.tuples[b].landmark.or(self.tuples[c].landmark);
         self.alive[c] = false;
         self.next[b] = d;
         self.previous[d] = b;
@@ -423,12 +445,18 @@ impl<'a> Collapser<'a> {
     }
 }
 
+/// By how much twice the signed area of a ring grows as its vertices `b` and `c` are merged at `apex`.
+fn gained_area([a, b, c, d]: [Point; 4], apex: Point) -> f64 {
+    let [b, c, d, apex] = [b, c, d, apex].map(|p| p - a);
+    point::cross(apex, d) - point::cross(b, c) - point::cross(c, d)
+}
+
 /// The triangle that an edge's move sweeps, or `None` where it sweeps nothing.
 fn swept(a: Point, b: Point, c: Point) -> Option<[Point; 3]> {
     match predicate::orientation(a, b, c) {
-        std::cmp::Ordering::Greater => Some([a, b, c]),
-        std::cmp::Ordering::Less => Some([a, c, b]),
-        std::cmp::Ordering::Equal => None,
+        Ordering::Greater => Some([a, b, c]),
+        Ordering::Less => Some([a, c, b]),
+        Ordering::Equal => None,
     }
 }
 

@@ -22,8 +22,8 @@
 //! 16 mean half-widths (area over perimeter) where that is less than the diagonal.
 //!
 //! Guarantee: each polygon is simple and contains its outline but for rounding of merged vertices (about 1e-14 of the
-//! diagonal); landmark tuples survive. Cost O(n log n) in the number of outline points n, for outlines whose edges are
-//! of similar length. Limit: the count of vertices follows from the tolerance, it cannot be asked for.
+//! diagonal); a landmark is a vertex exactly where it is given, in every pose. Cost O(n log n) in the number of outline points n, for outlines whose edges are
+//! of similar length. Limit: a corner next to a landmark is a vertex of its own, however near it is; the count of vertices follows from the tolerance, it cannot be asked for.
 
 mod collapse;
 mod edge_grid;
@@ -34,7 +34,7 @@ mod tuples;
 mod tests;
 
 use collapse::{Collapser, OriginalRing, PoseOriginal};
-use tuples::TupleRing;
+use tuples::{Pin, TupleRing};
 
 use super::CompatibleMesh;
 use crate::matching::Correspondence;
@@ -104,7 +104,7 @@ pub enum SimplifyError {
     /// The tolerance is not a positive number.
     #[error("the simplification tolerance must be a positive fraction of the diagonal, got {0}")]
     BadTolerance(f64),
-    /// A polygon degenerated to less than a triangle: the outlines are too small for their coordinates.
+    /// A polygon has less than three vertices farther apart than rounding, as the outline of a pose that is as thin as that.
     #[error("pose {pose}, ring {ring}: {source}; the drawing has too little detail at its size")]
     Degenerate {
         /// Which pose.
@@ -148,7 +148,7 @@ fn mean_half_width(outline: &Outline) -> f64 {
 /// Simplifies N outlines to N polygons with corresponding vertices that enclose them.
 ///
 /// `correspondences` holds one correspondence a ring, outer ring first; `landmarks` the boundary landmarks of the outer
-/// ring, as rows of parameters, one a pose: they survive as vertices.
+/// ring, as rows of parameters, one a pose, that correspond: each becomes a vertex, where it is on every pose.
 ///
 /// # Examples
 /// ```
@@ -341,7 +341,8 @@ impl<'a> Simplification<'a> {
                 .iter()
                 .map(|ring| ring.tuples.iter().map(|tuple| tuple.points[pose]).collect())
                 .collect();
-            tighten::tighten(&mut points, &original.rings);
+            let stays = |ring: usize, vertex: usize| rings[ring].tuples[vertex].landmark.is_some();
+            tighten::tighten(&mut points, &original.rings, stays);
             let mut rings = Vec::with_capacity(points.len());
             for (ring, points) in points.into_iter().enumerate() {
                 rings.push(Ring::new(points).map_err(|source| SimplifyError::Degenerate { pose, ring, source })?);
@@ -411,12 +412,17 @@ fn simplify_alone(
         .iter()
         .enumerate()
         .map(|(pose, outline)| {
-            let pinned: Vec<f64> = landmarks.iter().filter_map(|row| row.get(pose).copied()).collect();
+            let pins: Vec<Pin> = (landmarks.iter().enumerate())
+                .filter_map(|(landmark, row)| {
+                    let &parameter = row.get(pose)?;
+                    Some(Pin { landmark, parameter })
+                })
+                .collect();
             let rings = outline
                 .rings()
                 .iter()
                 .enumerate()
-                .map(|(ring, points)| TupleRing::single(points, if ring == 0 { &pinned } else { &[] }))
+                .map(|(ring, points)| TupleRing::single(points, if ring == 0 { &pins } else { &[] }))
                 .collect();
             let mut alone = Collapser::new(rings, &originals[pose..=pose], tolerance).run();
             for ring in &mut alone {

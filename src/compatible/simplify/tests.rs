@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::math::predicate;
 use crate::outline::ArcLength;
-use crate::outline::testing::{Kinship, poses};
+use crate::outline::testing::{Kinship, Recipe, outlines, poses};
 
 /// A wavy closed curve around a point: `waves` bumps of the given height, `count` points.
 fn wavy(count: usize, waves: usize, height: f64, phase: f64) -> Outline {
@@ -133,44 +133,77 @@ fn leak(outline: &Outline, polygon: &Outline) -> f64 {
     worst.fold(0.0, f64::max) / outline.diagonal()
 }
 
+/// Simplifies and proves everything that is promised: equal counts, simple, enclosing, landmarks in their places.
+fn prove(outlines: &[Outline], landmarks: &[f64], tolerance: f64) -> Result<(), TestCaseError> {
+    let identity = |_| Correspondence::identity(outlines.len(), 64);
+    let correspondences: Vec<Correspondence> = outlines[0].rings().iter().map(identity).collect();
+    let pinned: Vec<Vec<f64>> = landmarks.iter().map(|&t| vec![t; outlines.len()]).collect();
+    let options = SimplifyOptions::default().with_tolerance(tolerance);
+    // `Outline::new` inside has already proven each polygon simple.
+    let simplified = simplify(outlines, &correspondences, &pinned, &options)
+        .map_err(|error| TestCaseError::fail(error.to_string()))?;
+    let counts = |polygon: &Outline| polygon.rings().iter().map(Ring::len).collect::<Vec<_>>();
+    for (outline, polygon) in outlines.iter().zip(&simplified.polygons) {
+        prop_assert_eq!(counts(polygon), counts(&simplified.polygons[0]));
+        let leaked = leak(outline, polygon);
+        prop_assert!(leaked < 1e-9, "leaks {leaked}");
+    }
+    for &t in landmarks {
+        let is_there = |k: usize| {
+            let mut each = simplified.polygons.iter().zip(outlines);
+            each.all(|(polygon, outline)| polygon.outer().point(k) == ArcLength::new(outline.outer()).at(t))
+        };
+        let is_vertex = (0..simplified.polygons[0].outer().len()).any(is_there);
+        prop_assert!(is_vertex, "the landmark at {t} has no vertex");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_landmark_in_the_middle_of_a_side_stays_there() {
+    let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Point::from);
+    let outline = Outline::new(Ring::new(square).expect("a ring"), Vec::new()).expect("simple");
+    let simplified = simplify(
+        &[outline.clone(), outline],
+        &[Correspondence::identity(2, 64)],
+        &[vec![0.125; 2]],
+        &SimplifyOptions::default(),
+    )
+    .expect("simplified");
+    assert_eq!(simplified.report.vertices, 5);
+    for polygon in &simplified.polygons {
+        assert!(polygon.outer().points().contains(&Point::new(0.5, 0.0)));
+    }
+}
+
+#[test]
+fn a_hole_that_is_smaller_than_the_tolerance_keeps_an_area() {
+    let drawn = |seed: u64, vertices: usize, poses: usize, holes: usize, kinship: Kinship| {
+        outlines(&Recipe {
+            vertices,
+            poses,
+            holes,
+            kinship,
+            seed,
+        })
+    };
+    for (outlines, tolerance) in [
+        (drawn(57449, 7, 5, 1, Kinship::Strangers), 0.016_602_732_686_085_18),
+        (drawn(66822, 4, 7, 1, Kinship::Relatives), 0.029_898_273_173_047_343),
+    ] {
+        prove(&outlines, &[], tolerance).expect("proven");
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(ProptestConfig::with_cases(48))]
     #[test]
     fn any_outlines_are_enclosed_by_simple_polygons_that_correspond(
         outlines in poses(3..201, 1..9, 0..3, Kinship::Strangers),
         tolerance in 0.005..0.05f64,
         landmarks in prop::collection::vec(0.0..1.0f64, 0..4),
     ) {
-        let identity = |_| Correspondence::identity(outlines.len(), 64);
-        let correspondences: Vec<Correspondence> = outlines[0].rings().iter().map(identity).collect();
-        let pinned: Vec<Vec<f64>> = landmarks.iter().map(|&t| vec![t; outlines.len()]).collect();
-        let options = SimplifyOptions::default().with_tolerance(tolerance);
-        // `Outline::new` inside has already proven each polygon simple.
-        let simplified = match simplify(&outlines, &correspondences, &pinned, &options) {
-            Ok(simplified) => simplified,
-            // Outlines that have nothing in common may leave less than a triangle, which is refused.
-            Err(SimplifyError::Degenerate { .. }) => return Ok(()),
-            Err(error) => return Err(TestCaseError::fail(error.to_string())),
-        };
-        let counts = |polygon: &Outline| polygon.rings().iter().map(Ring::len).collect::<Vec<_>>();
-        for (outline, polygon) in outlines.iter().zip(&simplified.polygons) {
-            prop_assert_eq!(counts(polygon), counts(&simplified.polygons[0]));
-            let leaked = leak(outline, polygon);
-            prop_assert!(leaked < 1e-9, "leaks {leaked}");
-        }
-        // The vertex of a landmark may be a corner of the outline nearby that was merged with it.
-        for &t in &landmarks {
-            let distance = |k: usize| {
-                let each = simplified.polygons.iter().zip(&outlines).map(|(polygon, outline)| {
-                    let curve = ArcLength::new(outline.outer());
-                    (polygon.outer().point(k) - curve.at(t)).norm() / curve.perimeter()
-                });
-                each.fold(0.0, f64::max)
-            };
-            let count = simplified.polygons[0].outer().len();
-            let nearest = (0..count).map(distance).fold(f64::INFINITY, f64::min);
-            prop_assert!(nearest <= 2.0 * MERGE_DISTANCE, "the landmark at {t} is {nearest} off its vertex");
-        }
+        prove(&outlines, &landmarks, tolerance)?;
     }
 }
 

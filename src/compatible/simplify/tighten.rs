@@ -17,14 +17,16 @@ const BISECTIONS: usize = 6;
 /// it. Points further out do not exist: the polygon encloses the outline.
 const TOUCHING: f64 = 1e-9;
 
-/// Tightens the rings of one pose (all of them: they must not meet) around `originals`.
+/// Tightens the rings of one pose (all of them: they must not meet) around `originals`, but for the vertices that stay.
 ///
 /// Cost O(#vertices * (#outline points + #vertices)).
-pub(super) fn tighten(rings: &mut [Vec<Point>], originals: &[OriginalRing]) {
+pub(super) fn tighten(rings: &mut [Vec<Point>], originals: &[OriginalRing], stays: impl Fn(usize, usize) -> bool) {
     for _ in 0..SWEEPS {
         for ring in 0..rings.len() {
             for vertex in 0..rings[ring].len() {
-                if let Some(moved) = pulled(rings, ring, vertex, &originals[ring]) {
+                if !stays(ring, vertex)
+                    && let Some(moved) = pulled(rings, ring, vertex, &originals[ring])
+                {
                     rings[ring][vertex] = moved;
                 }
             }
@@ -177,7 +179,7 @@ mod tests {
                 .map(Point::from)
                 .to_vec(),
         ];
-        tighten(&mut rings, &[OriginalRing::new(&content)]);
+        tighten(&mut rings, &[OriginalRing::new(&content)], |_, _| false);
         let tight = Ring::new(rings[0].clone()).expect("a ring");
         assert!(tight.signed_area() < 6.0, "area {}", tight.signed_area());
         for p in content.points() {
