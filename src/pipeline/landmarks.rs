@@ -28,6 +28,10 @@ const INTERIOR_DEPTH: f64 = 0.01;
 /// Ends of lines nearer than this to an outline landmark in every pose, in perimeters, are that landmark.
 const SAME_PLACE: f64 = 2e-3;
 
+/// A landmark this near to a vertex of the outline, in perimeters, is at that vertex: half a pixel of an outline of two
+/// thousand. The mesh has vertices at both, and the edge between would be as short as what the artist's decimals leave.
+const CORNER_REACH: f64 = 2.5e-4;
+
 /// All landmarks of a scene. Places are those of the drawings as they are used: reflected where the pose is.
 pub(super) struct Landmarks {
     /// On the outer rings, ends of lines included.
@@ -333,7 +337,7 @@ fn snapped(
 /// A landmark's place on one pose.
 struct Found {
     place: Point,
-    /// Of the nearest point of the outline.
+    /// Of the nearest point of the outline, or a vertex beside it.
     parameter: f64,
     /// To that point, in source units.
     distance: f64,
@@ -345,7 +349,12 @@ struct Found {
 impl Found {
     fn new(scene: &Scene, drawings: &[Drawing], measured: &[ArcLength], pose: usize, place: Point) -> Self {
         let place = as_used(scene, drawings, pose, place);
-        let (parameter, distance) = measured[pose].nearest(place);
+        let (nearest, distance) = measured[pose].nearest(place);
+        let corners = measured[pose].vertex_parameters().iter().copied();
+        let corner = corners.min_by(|a, b| parameter_gap(*a, nearest).total_cmp(&parameter_gap(*b, nearest)));
+        let parameter = corner
+            .filter(|t| parameter_gap(*t, nearest) <= CORNER_REACH)
+            .unwrap_or(nearest);
         let outline = &drawings[pose].outline;
         Self {
             place,
