@@ -116,8 +116,7 @@ impl<'a> LinkGraph<'a> {
         let mut links = vec![Vec::new(); candidates.len()];
         for a in 0..candidates.len() {
             for b in a + 1..candidates.len() {
-                let (p, q) = (candidates[a], candidates[b]);
-                if (0..count).all(|e| !predicate::touch(points[e], points[(e + 1) % count], p, q)) {
+                if is_clear(points, candidates[a], candidates[b]) {
                     links[a].push(b);
                     links[b].push(a);
                 }
@@ -155,7 +154,8 @@ impl<'a> LinkGraph<'a> {
         Search { reached, last }
     }
 
-    /// The path from one vertex to another with exactly `length` points between; `None` if it would cross itself.
+    /// The path from one vertex to another with exactly `length` points between; `None` if it would cross itself, or touch an
+    /// edge after rounding.
     fn path(&self, from: usize, to: usize, length: usize) -> Option<Vec<Point>> {
         let search = self.search(from);
         let mut points = vec![self.sight.points[to]];
@@ -173,11 +173,23 @@ impl<'a> LinkGraph<'a> {
             })?;
             points.insert(longest + 1, (points[longest] + points[longest + 1]) / 2.0);
         }
-        let simple = (0..points.len() - 1).all(|a| {
+        let interior = &points[1..points.len() - 1];
+        let is_simple = (0..points.len() - 1).all(|a| {
             (a + 2..points.len() - 1).all(|b| !predicate::touch(points[a], points[a + 1], points[b], points[b + 1]))
         });
-        simple.then(|| points[1..points.len() - 1].to_vec())
+        // The middle of a link may be off it by rounding.
+        let ring = &self.sight.points;
+        let is_inside = sees(ring, from, *interior.first()?)
+            && sees(ring, to, *interior.last()?)
+            && interior.iter().zip(&interior[1..]).all(|(p, q)| is_clear(ring, *p, *q));
+        (is_simple && is_inside).then(|| interior.to_vec())
     }
+}
+
+/// Whether the segment between two inner points touches no edge.
+fn is_clear(points: &[Point], p: Point, q: Point) -> bool {
+    let count = points.len();
+    (0..count).all(|e| !predicate::touch(points[e], points[(e + 1) % count], p, q))
 }
 
 #[cfg(test)]
@@ -282,7 +294,7 @@ mod tests {
                     assert_eq!(path.len(), length);
                     assert!(sees(points, from, path[0]) && sees(points, to, path[length - 1]));
                     for (p, q) in path.iter().zip(&path[1..]) {
-                        assert!((0..count).all(|e| !predicate::touch(points[e], points[(e + 1) % count], *p, *q)));
+                        assert!(is_clear(points, *p, *q));
                     }
                 }
             }
