@@ -311,7 +311,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(12))]
+        #![proptest_config(ProptestConfig::with_cases(100))]
         #[test]
         fn paths_are_inside_and_the_shortest_over_the_candidates(points in rings(3..20)) {
             prove(&points);
