@@ -93,10 +93,7 @@ impl RigidBlend {
         together.resize(self.system().right_len(), [0.0; 2 * TOGETHER]);
         for (k, weights) in characters() {
             self.normalise(weights, frame)?;
-            self.assemble(&[], frame);
-            for (entries, right) in together.iter_mut().zip(frame.right()) {
-                entries[2 * k..2 * k + 2].copy_from_slice(right);
-            }
+            self.assemble(&[], frame, together, k);
         }
         self.system().solve(together)?;
         let mut total = BlendReport::default();

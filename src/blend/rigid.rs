@@ -84,13 +84,6 @@ pub fn blend_once(poses: &PoseSet, options: &BlendOptions, weights: &[f64]) -> R
     Ok(positions)
 }
 
-impl BlendScratch {
-    /// The right-hand side that was put together last.
-    pub(super) fn right(&self) -> &[[f64; 2]] {
-        &self.right
-    }
-}
-
 impl BlendReport {
     /// Both together.
     pub(super) fn and(self, other: Self) -> Self {
@@ -249,12 +242,17 @@ impl RigidBlend {
         scratch: &mut BlendScratch,
         positions: &mut [Point],
     ) -> Result<(), BlendError> {
-        self.assemble(anchors, scratch);
-        self.system.solve(&mut scratch.right)?;
-        for (position, &solved) in positions.iter_mut().zip(self.system.solved(&scratch.right)) {
-            *position = Point::from(solved);
+        // Taken out so that the scratch can be lent on; a vector that is moved is not allocated again.
+        let mut right = std::mem::take(&mut scratch.right);
+        right.clear();
+        right.resize(self.system.right_len(), [0.0; 2]);
+        self.assemble(anchors, scratch, &mut right, 0);
+        let solved = self.system.solve(&mut right);
+        for (position, &place) in positions.iter_mut().zip(self.system.solved(&right)) {
+            *position = Point::from(place);
         }
-        Ok(())
+        scratch.right = right;
+        solved
     }
 
     /// Puts solved positions in place, for the normalised weights in `scratch`, looks at them, and repairs what has to be.
@@ -323,19 +321,25 @@ impl RigidBlend {
         Ok(false)
     }
 
-    /// Puts the right-hand side together for the normalised weights in `scratch`.
-    pub(super) fn assemble(&self, anchors: &[Option<Point>], scratch: &mut BlendScratch) {
+    /// Adds the right-hand side for the normalised weights in `scratch` to the columns of `frame` in `right`.
+    pub(super) fn assemble<const K: usize>(
+        &self,
+        anchors: &[Option<Point>],
+        scratch: &mut BlendScratch,
+        right: &mut [[f64; K]],
+        frame: usize,
+    ) {
         match self.stretch {
             Stretch::Limited => limit_weights(&scratch.weights, &mut scratch.stretch_weights),
             Stretch::Linear | Stretch::Log => scratch.stretch_weights.clone_from(&scratch.weights),
         }
-        scratch.right.resize(self.system.right_len(), [0.0; 2]);
         self.system.assemble(
             &self.targets,
             &scratch.weights,
             &scratch.stretch_weights,
             self.anchors.pulls(&scratch.weights, anchors),
-            &mut scratch.right,
+            right,
+            frame,
         );
     }
 

@@ -130,28 +130,29 @@ impl System {
         self.factor.factor_entry_count()
     }
 
-    /// Puts the right-hand side of a frame together: what `targets` want at these weights, and what soft anchors pull.
-    pub(super) fn assemble(
+    /// Puts the right-hand side of a frame together: what `targets` want at these weights, and what soft anchors pull. It is
+    /// added to the columns `2 frame` and `2 frame + 1` of `right`.
+    pub(super) fn assemble<const K: usize>(
         &self,
         targets: &Targets,
         weights: &[f64],
         stretch_weights: &[f64],
         pulls: impl Iterator<Item = (usize, Point)>,
-        right: &mut [[f64; 2]],
+        right: &mut [[f64; K]],
+        frame: usize,
     ) {
-        right.fill([0.0; 2]);
         vectorised(
             #[inline(always)]
             || {
                 let mut maps: BlockMaps = [[0.0; LANES]; 4];
                 for (block, stencil) in self.stencils.iter().enumerate() {
                     targets.block(block, weights, stretch_weights, &mut maps);
-                    stencil.add(&maps, right);
+                    stencil.add(&maps, right, frame);
                 }
             },
         );
         for (vertex, pull) in pulls {
-            let entry = &mut right[self.slots[vertex] as usize];
+            let entry = columns_of(right, self.slots[vertex] as usize, frame);
             entry[0] += pull.x;
             entry[1] += pull.y;
         }
@@ -190,7 +191,7 @@ impl System {
 impl Stencil {
     /// Adds what the triangles of the block pull at their corners.
     #[inline(always)]
-    fn add(&self, [m11, m12, m21, m22]: &BlockMaps, right: &mut [[f64; 2]]) {
+    fn add<const K: usize>(&self, [m11, m12, m21, m22]: &BlockMaps, right: &mut [[f64; K]], frame: usize) {
         let [x1, y1, x2, y2] = &self.gradients;
         let mut pulls = [[0.0; 4]; LANES];
         for (lane, pull) in pulls.iter_mut().enumerate() {
@@ -203,12 +204,18 @@ impl Stencil {
         }
         for (lane, &[px, py, qx, qy]) in pulls.iter().enumerate() {
             let [first, second, third] = [0, 1, 2].map(|corner| self.slots[corner][lane] as usize);
-            let entry = &mut right[first];
+            let entry = columns_of(right, first, frame);
             *entry = [entry[0] - (px + qx), entry[1] - (py + qy)];
-            let entry = &mut right[second];
+            let entry = columns_of(right, second, frame);
             *entry = [entry[0] + px, entry[1] + py];
-            let entry = &mut right[third];
+            let entry = columns_of(right, third, frame);
             *entry = [entry[0] + qx, entry[1] + qy];
         }
     }
+}
+
+/// The x and y of a frame at an unknown.
+#[inline(always)]
+fn columns_of<const K: usize>(right: &mut [[f64; K]], slot: usize, frame: usize) -> &mut [f64; 2] {
+    &mut right[slot].as_chunks_mut().0[frame]
 }
