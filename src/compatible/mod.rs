@@ -25,7 +25,8 @@ mod triangulate;
 pub use refine::{RefineError, RefineOptions, RefineReport, refine};
 pub use simplify::{Simplification, Simplified, SimplifyError, SimplifyOptions, SimplifyReport, simplify};
 pub use triangulate::{
-    Feature, FeaturePath, Features, PathEnd, TriangulateError, TriangulateReport, triangulate, triangulate_features,
+    Effort, Feature, FeaturePath, Features, PathEnd, TriangulateError, TriangulateReport, triangulate,
+    triangulate_features,
 };
 
 use crate::math::Point;

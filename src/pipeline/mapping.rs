@@ -4,8 +4,8 @@ use super::landmarks::{self, Landmarks};
 use super::triangulation::{self, Labels, LandmarkLabel};
 use super::{MappingReport, PipelineError, Stage, deformed};
 use crate::compatible::{
-    CompatibleMesh, RefineOptions, Simplification, SimplifyError, SimplifyOptions, TriangulateReport, refine,
-    triangulate_features,
+    CompatibleMesh, Effort, RefineOptions, Simplification, Simplified, SimplifyError, SimplifyOptions,
+    TriangulateReport, refine, triangulate_features,
 };
 use crate::input::Drawing;
 use crate::matching::{Correspondence, Landmark, MatchError, MatchOptions, MatchReport, MirrorHints, match_rings};
@@ -94,23 +94,16 @@ fn map_drawn(
         .iter()
         .map(|at| at.iter().zip(&measured).map(|(&t, outline)| outline.at(t)).collect())
         .collect();
-    let mut bare = bare_mesh(scene, drawings, &simplified.polygons, &landmarks, &anchors)?;
+    let triangulated =
+        |polygons: &[Outline], effort| bare_mesh(scene, drawings, polygons, &landmarks, &anchors, effort);
+    let mut bare = triangulated(&simplified.polygons, Effort::Full)?;
     let mut first = None;
-    for _ in 0..Simplification::VARIATIONS {
-        if bare.mesh.steiner == 0 {
-            break;
-        }
-        let Some(varied) = simplification.vary(&bare.mesh) else {
-            continue;
-        };
-        if let Ok(other) = bare_mesh(scene, drawings, &varied.polygons, &landmarks, &anchors)
-            && other.mesh.is_sparer_than(&bare.mesh)
-        {
-            simplification.keep();
-            let before = std::mem::replace(&mut bare, other);
-            let before = (before, std::mem::replace(&mut simplified, varied));
-            first = first.or(Some(before));
-        }
+    if let Some(varied) = sparser(&mut simplification, &bare, &triangulated)
+        && let Ok(other) = triangulated(&varied.polygons, Effort::Full)
+        && other.mesh.is_sparer_than(&bare.mesh)
+    {
+        let before = std::mem::replace(&mut bare, other);
+        first = Some((before, std::mem::replace(&mut simplified, varied)));
     }
 
     begins(Stage::Refinement);
@@ -151,6 +144,31 @@ fn map_drawn(
         },
     };
     Ok((mapping, report))
+}
+
+/// The best of some variations of the simplification by their sketched triangulations, if any beats the first.
+fn sparser(
+    simplification: &mut Simplification,
+    first: &Bare,
+    triangulated: &impl Fn(&[Outline], Effort) -> Result<Bare, PipelineError>,
+) -> Option<Simplified> {
+    let mut best: Option<(Bare, Simplified)> = None;
+    for _ in 0..Simplification::VARIATIONS {
+        let least = best.as_ref().map_or(&first.mesh, |(bare, _)| &bare.mesh);
+        if least.steiner == 0 {
+            break;
+        }
+        let Some(varied) = simplification.vary(least) else {
+            continue;
+        };
+        if let Ok(other) = triangulated(&varied.polygons, Effort::Sketch)
+            && other.mesh.is_sparer_than(least)
+        {
+            simplification.keep();
+            best = Some((other, varied));
+        }
+    }
+    best.map(|(_, varied)| varied)
 }
 
 /// All rings, matched.
@@ -205,6 +223,7 @@ fn bare_mesh(
     polygons: &[Outline],
     landmarks: &Landmarks,
     anchors: &[Vec<Point>],
+    effort: Effort,
 ) -> Result<Bare, PipelineError> {
     let label = |name: &String, line: usize| LandmarkLabel {
         name: name.clone(),
@@ -220,7 +239,7 @@ fn bare_mesh(
     let mut refusal = PipelineError::stage(&[], None, "no polygon");
     for share in FINER_LINES {
         let (features, notes) = landmarks.features(scene, drawings, polygons, anchors, share * scene.mesh.simplify)?;
-        match triangulate_features(polygons, &features) {
+        match triangulate_features(polygons, &features, effort) {
             Ok((mesh, report)) => return Ok(Bare { mesh, report, notes }),
             Err(error) => {
                 let may_be_coarse = triangulation::concerns_a_path(&error);

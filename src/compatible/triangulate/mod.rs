@@ -189,8 +189,21 @@ pub fn triangulate(
         points: landmarks.to_vec(),
         paths: Vec::new(),
     };
-    triangulate_features(polygons, &features)
+    triangulate_features(polygons, &features, Effort::Full)
 }
+
+/// How much is searched for fewer Steiner points once there is a triangulation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Effort {
+    /// About a second at most.
+    #[default]
+    Full,
+    /// A fortieth of it, to compare polygons by how many points they will need.
+    Sketch,
+}
+
+/// What a sketch does of the search: one part in so many.
+const SKETCHED: usize = 40;
 
 /// Triangulates N polygons compatibly, with a vertex at each point and a chain of edges along each path of `features`.
 ///
@@ -203,8 +216,13 @@ pub fn triangulate(
 pub fn triangulate_features(
     polygons: &[Outline],
     features: &Features,
+    effort: Effort,
 ) -> Result<(CompatibleMesh, TriangulateReport), TriangulateError> {
-    searched(polygons, features, patch::WORK)
+    let work = match effort {
+        Effort::Full => patch::WORK,
+        Effort::Sketch => patch::WORK / SKETCHED,
+    };
+    searched(polygons, features, work)
 }
 
 /// As [`triangulate_features`], with so much work at most for the search of [`patch`].

@@ -31,7 +31,7 @@ const FREE: [PathEnd; 2] = [PathEnd::Inside; 2];
 
 /// Proves mesh and chains, bare and refined; each chain keeps the given points.
 fn prove(polygons: &[Outline], features: &Features) -> TriangulateReport {
-    let (mesh, report) = triangulate_features(polygons, features).expect("triangulated");
+    let (mesh, report) = triangulate_features(polygons, features, Effort::Full).expect("triangulated");
     let (refined, _) = refine(&mesh, &RefineOptions::default().with_edge_length(0.1)).expect("refined");
     for mesh in [&mesh, &refined] {
         for positions in &mesh.positions {
@@ -99,7 +99,7 @@ fn paths_from_the_outline_and_from_side_to_side_are_chains() {
     // The same order about vertex 0 in every pose, or it is refused.
     let mut crossed = features.clone();
     crossed.paths[1] = path([at(0), PathEnd::Inside], &[vec![[2.0, 5.0]], vec![[6.0, 1.0]]]);
-    let error = triangulate_features(&[square(), square()], &crossed).expect_err("on the other side");
+    let error = triangulate_features(&[square(), square()], &crossed, Effort::Full).expect_err("on the other side");
     assert!(matches!(error, TriangulateError::PathSides { pose: 1, .. }), "{error}");
 }
 
@@ -111,7 +111,7 @@ fn paths_that_leave_or_cross_are_refused_by_number() {
             points: vec![],
             paths: paths.into_iter().map(|points| path(FREE, &[points])).collect(),
         };
-        triangulate_features(&polygons, &features).expect_err("refused")
+        triangulate_features(&polygons, &features, Effort::Full).expect_err("refused")
     };
     let feature = Feature::Path(0);
     let outside = TriangulateError::FeatureOutside { feature, pose: 0 };
