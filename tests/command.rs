@@ -150,6 +150,19 @@ fn a_mapping_blends_to_its_poses() {
 }
 
 #[test]
+fn a_guarded_frame_has_no_inverted_triangle() {
+    let workshop = two();
+    workshop.succeeds(&["map", "scene.toml", "-o", "m.json"]);
+    let flipped = |guard: &str| {
+        let arguments = ["blend", "m.json", "--weights=4,-3", "--frame-guard", guard, "-o", "-"];
+        let frame: serde_json::Value = serde_json::from_str(&workshop.succeeds(&arguments)).expect("JSON");
+        frame["flipped"].as_u64().expect("a count")
+    };
+    assert!(flipped("off") > 0);
+    assert_eq!(flipped("repair"), 0);
+}
+
+#[test]
 fn weights_need_no_drawing() {
     let workshop = two();
     std::fs::remove_file(workshop.path("tall.png")).expect("removed");

@@ -8,7 +8,8 @@
 //! 3. For weights `w` the targets are `A(w) = R(sum w_i alpha_i) S(w)` ([`stretch`]).
 //! 4. Vertices minimise `sum area |J(V) - A(w)|^2`: one sparse factorisation, two triangular solves a frame for x and
 //!    y together ([`RigidBlend`]).
-//! 5. An anchor fixes the translation.
+//! 5. An anchor fixes the translation; several soft ones are terms of the same energy.
+//! 6. Inverted triangles are counted, or the frame is repaired ([`FrameGuard`]).
 //!
 //! Differences from the paper:
 //! - Its last formula writes `R(alpha_{tau,i}(w))`; the subscript `i` is a misprint, the angle is the blended one.
@@ -17,7 +18,9 @@
 //!   ([`mod@reference`]), and the result depends neither on a base nor on the order of the poses. The references do not
 //!   fit together in the plane and need not: the energy only needs each triangle's shape.
 //! - Stretches can be blended through their logarithms, which stays positive for all weights.
-//! - Triangles that come out inverted are counted and reported.
+//! - Parts can be stiffer than others, or limited in how far they stretch ([`Region`]).
+//! - Triangles that come out inverted are counted and reported, or pushed back by a barrier.
+//! - Many characters of one kind are blended in one call ([`RigidBlend::blend_crowd`]).
 
 mod anchor;
 pub mod branch;

@@ -10,7 +10,7 @@
 //! 3. Every edge is then checked: if its two triangles disagree about its angle, the walk does not close.
 //!
 //! The edge's own angle is computed only where it decides: the two triangles differ by less than half a turn, so
-//! where rounding to the neighbour leaves a margin ([`CLEAR_RAD`]), both ways agree.
+//! where rounding to the neighbour leaves a margin (`CLEAR_RAD`), both ways agree.
 //!
 //! From a pose to a reference triangle that is no pose, stepping would be wrong: neighbouring references need not
 //! share a direction. There the angles are lifted through the pose-to-pose angles ([`lift`]).
