@@ -14,11 +14,12 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use inbetween::blend::{BlendOptions, RigidBlend, Stretch};
+use inbetween::export::Palette;
 use inbetween::input::Drawing;
 use inbetween::math::{Point, point};
 use inbetween::pipeline::{map_drawings, read_drawings};
 use inbetween::pose::{HandleDeformation, Mapping};
-use inbetween::render::{Camera, Painter, PoseTexture, Silhouette, Texture};
+use inbetween::render::{Camera, Frame, Painter, PoseTexture, Silhouette, Texture};
 use inbetween::scene::Scene;
 use inbetween::texture::texture_weights;
 use tiny_skia::Color;
@@ -26,25 +27,23 @@ use tiny_skia::Color;
 use common::{Sheet, outline_of};
 
 /// Columns of one shape's cell, in pixels.
-const CELL_WIDTH: u32 = 160;
+const CELL_WIDTH: u32 = 184;
 /// How many steps from one pose to another are shown.
 const STEPS: usize = 5;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("usage: blending FOLDER")?);
     std::fs::create_dir_all(&folder)?;
-    let [walker, snake, clown] = [Cast::read("walker")?, Cast::read("snake")?, Cast::read("clown")?];
-    linear_against_rigid(&snake, &walker)?.save(&folder, "linear-against-rigid")?;
-    shear_limiting(&clown)?.save(&folder, "shear-limiting")?;
-    morphing_against_deformation(&walker)?.save(&folder, "morphing-against-deformation")
+    let [walker, snake, face] = [Cast::read("walker")?, Cast::read("snake")?, Cast::read("face")?];
+    save(linear_against_rigid(&snake, &walker)?, &folder, "linear-against-rigid")?;
+    save(shear_limiting(&face)?, &folder, "shear-limiting")?;
+    let sheet = morphing_against_deformation(&walker)?;
+    save(sheet, &folder, "morphing-against-deformation")
 }
 
 /// Of each of two characters a row of linear in-betweens and a row of rigid ones.
 fn linear_against_rigid(snake: &Cast, walker: &Cast) -> Result<Sheet, Box<dyn Error>> {
-    let shown = [
-        (snake, ["straight", "coil"], 92),
-        (walker, ["stride_left", "jump"], 176),
-    ];
+    let shown = [(snake, ["straight", "coil"], 106), (walker, ["stand", "jump"], 202)];
     let mut sheet = Sheet::new([
         CELL_WIDTH * STEPS as u32,
         shown.iter().map(|(_, _, height)| 2 * height).sum(),
@@ -65,19 +64,24 @@ fn linear_against_rigid(snake: &Cast, walker: &Cast) -> Result<Sheet, Box<dyn Er
 }
 
 /// A row for each way of blending stretches; from left to right further and further beyond the drawings.
-fn shear_limiting(clown: &Cast) -> Result<Sheet, Box<dyn Error>> {
-    const BEYOND: [f64; 5] = [1.0, 1.4, 1.8, 2.2, 2.6];
-    const HEIGHT: u32 = 176;
+fn shear_limiting(face: &Cast) -> Result<Sheet, Box<dyn Error>> {
+    const BEYOND: [f64; 5] = [1.0, 1.2, 1.4, 1.6, 1.8];
+    const HEIGHT: u32 = 150;
     let mut rows = Vec::new();
     for stretch in [Stretch::Linear, Stretch::Limited, Stretch::Log] {
-        let blend = clown.blend(stretch)?;
+        let blend = face.blend(stretch)?;
         let row: Result<Vec<Shape>, Box<dyn Error>> = (BEYOND.iter())
-            .map(|weight| Shape::rigid(&blend, &clown.weights(&[("stand", 1.0 - weight), ("squash", *weight)])?))
+            .map(|weight| {
+                Shape::rigid(
+                    &blend,
+                    &face.weights(&[("calm_left", 1.0 - weight), ("calm_right", *weight)])?,
+                )
+            })
             .collect();
         rows.push(row?);
     }
     let mut sheet = Sheet::new([CELL_WIDTH * BEYOND.len() as u32, HEIGHT * rows.len() as u32])?;
-    clown.paint_rows(&mut sheet, 0, HEIGHT, &rows)?;
+    face.paint_rows(&mut sheet, 0, HEIGHT, &rows)?;
     Ok(sheet)
 }
 
@@ -96,7 +100,7 @@ fn morphing_against_deformation(walker: &Cast) -> Result<Sheet, Box<dyn Error>> 
         "left_knee_middle",
         "right_knee_middle",
     ];
-    const HEIGHT: u32 = 190;
+    const HEIGHT: u32 = 218;
     const COLUMNS: usize = 4;
     let many: Vec<&str> = FEW.into_iter().chain(MORE).collect();
     let mut sheet = Sheet::new([CELL_WIDTH * COLUMNS as u32, HEIGHT * TARGETS.len() as u32])?;
@@ -132,13 +136,30 @@ fn morphing_against_deformation(walker: &Cast) -> Result<Sheet, Box<dyn Error>> 
             sheet.paste(corner, &walker.paint(&painter, shape)?)?;
             let shift = Point::new(f64::from(corner[0]), f64::from(corner[1]));
             let placed: Vec<Point> = outline.iter().map(|p| camera.to_pixels(*p) + shift).collect();
-            sheet.line(&outline_of(&placed, true), 1.3, Color::from_rgba8(0, 90, 230, 255));
+            sheet.line(&outline_of(&placed, true), 1.3, Color::from_rgba8(225, 0, 190, 255));
             for dot in dots {
                 sheet.dot(camera.to_pixels(*dot) + shift, 2.4, Color::from_rgba8(20, 20, 20, 255));
             }
         }
     }
     Ok(sheet)
+}
+
+/// Writes `NAME.png` with a palette, which takes a third of the bytes.
+fn save(sheet: Sheet, folder: &Path, name: &str) -> Result<(), Box<dyn Error>> {
+    let frame = sheet.into_frame();
+    let palette = Palette::for_frames(std::slice::from_ref(&frame));
+    let file = std::fs::File::create(folder.join(format!("{name}.png")))?;
+    let mut encoder = png::Encoder::new(file, frame.width as u32, frame.height as u32);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_palette(palette.bytes());
+    encoder.set_compression(png::Compression::High);
+    encoder.set_filter(png::Filter::NoFilter);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&palette.indices(&frame))?;
+    writer.finish()?;
+    Ok(())
 }
 
 /// A shape to be painted.
@@ -251,7 +272,7 @@ impl Cast {
         Painter::new(&self.mapping, textures, texture_of, self.silhouette.clone(), camera)
     }
 
-    fn paint(&self, painter: &Painter, shape: &Shape) -> Result<inbetween::render::Frame, Box<dyn Error>> {
+    fn paint(&self, painter: &Painter, shape: &Shape) -> Result<Frame, Box<dyn Error>> {
         let textures = texture_weights(&shape.weights, self.scene.texture_sharpness)?;
         Ok(painter.paint(&shape.positions, &shape.weights, &textures))
     }

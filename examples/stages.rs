@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use inbetween::blend::{BlendOptions, RigidBlend};
 use inbetween::compatible::{CompatibleMesh, RefineOptions, SimplifyOptions, refine, simplify, triangulate};
+use inbetween::export::png_bytes;
 use inbetween::input::Drawing;
 use inbetween::matching::{Correspondence, Landmark, MatchOptions, match_rings};
 use inbetween::math::{Point, point};
@@ -36,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     )))?;
 
     let drawings = read_drawings(&scene)?;
-    draw_input(&drawings)?.save(&folder, "1-input")?;
+    save(draw_input(&drawings)?, &folder, "1-input")?;
 
     let outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
     let rings: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
@@ -47,7 +48,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..MatchOptions::default()
     };
     let matched = match_rings(&rings, &landmarks, &options)?;
-    draw_matching(&curves, &matched.correspondence, matched.reference)?.save(&folder, "2-matching")?;
+    save(
+        draw_matching(&curves, &matched.correspondence, matched.reference)?,
+        &folder,
+        "2-matching",
+    )?;
 
     let kept: Vec<Vec<f64>> = landmarks
         .iter()
@@ -55,17 +60,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         .collect();
     let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
     let simplified = simplify(&outlines, &[matched.correspondence], &kept, &options)?;
-    draw_polygons(&outlines, &simplified.polygons)?.save(&folder, "3-simplified")?;
+    save(draw_polygons(&outlines, &simplified.polygons)?, &folder, "3-simplified")?;
 
     let (bare, _) = triangulate(&simplified.polygons, &inside)?;
-    draw_meshes(&bare, &bare.positions)?.save(&folder, "4-triangulated")?;
+    save(draw_meshes(&bare, &bare.positions)?, &folder, "4-triangulated")?;
 
     let options = RefineOptions::default().with_edge_length(scene.mesh.edge_length);
     let (mesh, _) = refine(&bare, &options)?;
-    draw_meshes(&mesh, &mesh.positions)?.save(&folder, "5-refined")?;
+    save(draw_meshes(&mesh, &mesh.positions)?, &folder, "5-refined")?;
 
     let provider = weight_provider(&scene, None)?;
-    draw_weights(&scene, provider.as_ref())?.save(&folder, "6-weights")?;
+    save(draw_weights(&scene, provider.as_ref())?, &folder, "6-weights")?;
 
     let names = scene.names();
     let poses = PoseSet::new(
@@ -79,14 +84,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         blend.blend(&weights, &mut scratch, &mut positions)?;
         blended.push(positions);
     }
-    draw_meshes(&mesh, &blended)?.save(&folder, "7-blended")?;
+    save(draw_meshes(&mesh, &blended)?, &folder, "7-blended")?;
 
     let character = Character::new(&scene, CELL.map(|side| side as usize))?;
     let mut strip = row_of(STEPS)?;
     for (step, weights) in steps(&scene)?.into_iter().enumerate() {
         strip.paste([step as u32 * CELL[0], 0], &character.frame_of(&weights)?)?;
     }
-    strip.save(&folder, "8-frames")
+    save(strip, &folder, "8-frames")
 }
 
 /// The scene's landmarks: those on the outlines as arc-length parameters, and those inside as places.
@@ -287,6 +292,11 @@ impl Fit {
         let placed: Vec<Point> = points.iter().map(|p| self.place(*p)).collect();
         outline_of(&placed, true)
     }
+}
+
+fn save(sheet: Sheet, folder: &Path, name: &str) -> Result<(), Box<dyn Error>> {
+    std::fs::write(folder.join(format!("{name}.png")), png_bytes(&sheet.into_frame())?)?;
+    Ok(())
 }
 
 /// A row of cells on white.

@@ -1,9 +1,5 @@
 //! What the examples that draw share: a white sheet to draw and paste on.
 
-use std::error::Error;
-use std::path::Path;
-
-use inbetween::export::png_bytes;
 use inbetween::math::Point;
 use inbetween::render::Frame;
 use tiny_skia::{Color, FillRule, Paint, Path as Curve, PathBuilder, Pixmap, PixmapPaint, Stroke, Transform};
@@ -59,9 +55,9 @@ impl Sheet {
         Ok(())
     }
 
-    /// Writes `name.png`.
-    pub(crate) fn save(self, folder: &Path, name: &str) -> Result<(), Box<dyn Error>> {
-        let frame = Frame {
+    /// What is on the sheet.
+    pub(crate) fn into_frame(self) -> Frame {
+        Frame {
             width: self.pixels.width() as usize,
             height: self.pixels.height() as usize,
             pixels: self
@@ -70,9 +66,7 @@ impl Sheet {
                 .chunks_exact(4)
                 .map(|p| [p[0], p[1], p[2], p[3]])
                 .collect(),
-        };
-        std::fs::write(folder.join(format!("{name}.png")), png_bytes(&frame)?)?;
-        Ok(())
+        }
     }
 }
 
