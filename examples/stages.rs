@@ -3,6 +3,8 @@
 //! `cargo run --release --example stages -- FOLDER` writes `1-input.png` to `8-frames.png` there. Here the stages are called
 //! one by one; `pipeline::Character` does the same, for every scene, in one call.
 
+mod common;
+
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
@@ -15,10 +17,11 @@ use inbetween::math::{Point, point};
 use inbetween::outline::{ArcLength, Outline, Ring};
 use inbetween::pipeline::{Character, read_drawings, weight_provider};
 use inbetween::pose::PoseSet;
-use inbetween::render::Frame;
 use inbetween::scene::Scene;
 use inbetween::weights::WeightProvider;
-use tiny_skia::{Color, FillRule, Paint, Path as Curve, PathBuilder, Pixmap, PixmapPaint, Stroke, Transform};
+use tiny_skia::{Color, Path as Curve, Pixmap, PixmapPaint, Transform};
+
+use common::{Sheet, outline_of};
 
 /// Columns and rows of one pose's cell, in pixels.
 const CELL: [u32; 2] = [192, 216];
@@ -34,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     )))?;
 
     let drawings = read_drawings(&scene)?;
-    draw_input(&drawings)?.save(&folder, "1-input")?;
+    save(draw_input(&drawings)?, &folder, "1-input")?;
 
     let outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
     let rings: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
@@ -45,7 +48,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..MatchOptions::default()
     };
     let matched = match_rings(&rings, &landmarks, &options)?;
-    draw_matching(&curves, &matched.correspondence, matched.reference)?.save(&folder, "2-matching")?;
+    save(
+        draw_matching(&curves, &matched.correspondence, matched.reference)?,
+        &folder,
+        "2-matching",
+    )?;
 
     let kept: Vec<Vec<f64>> = landmarks
         .iter()
@@ -53,17 +60,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         .collect();
     let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
     let simplified = simplify(&outlines, &[matched.correspondence], &kept, &options)?;
-    draw_polygons(&outlines, &simplified.polygons)?.save(&folder, "3-simplified")?;
+    save(draw_polygons(&outlines, &simplified.polygons)?, &folder, "3-simplified")?;
 
     let (bare, _) = triangulate(&simplified.polygons, &inside)?;
-    draw_meshes(&bare, &bare.positions)?.save(&folder, "4-triangulated")?;
+    save(draw_meshes(&bare, &bare.positions)?, &folder, "4-triangulated")?;
 
     let options = RefineOptions::default().with_edge_length(scene.mesh.edge_length);
     let (mesh, _) = refine(&bare, &options)?;
-    draw_meshes(&mesh, &mesh.positions)?.save(&folder, "5-refined")?;
+    save(draw_meshes(&mesh, &mesh.positions)?, &folder, "5-refined")?;
 
     let provider = weight_provider(&scene, None)?;
-    draw_weights(&scene, provider.as_ref())?.save(&folder, "6-weights")?;
+    save(draw_weights(&scene, provider.as_ref())?, &folder, "6-weights")?;
 
     let names = scene.names();
     let poses = PoseSet::new(
@@ -77,14 +84,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         blend.blend(&weights, &mut scratch, &mut positions)?;
         blended.push(positions);
     }
-    draw_meshes(&mesh, &blended)?.save(&folder, "7-blended")?;
+    save(draw_meshes(&mesh, &blended)?, &folder, "7-blended")?;
 
     let character = Character::new(&scene, CELL.map(|side| side as usize))?;
-    let mut strip = Strip::new(STEPS)?;
+    let mut strip = row_of(STEPS)?;
     for (step, weights) in steps(&scene)?.into_iter().enumerate() {
-        strip.paste(step, &character.frame_of(&weights)?)?;
+        strip.paste([step as u32 * CELL[0], 0], &character.frame_of(&weights)?)?;
     }
-    strip.save(&folder, "8-frames")
+    save(strip, &folder, "8-frames")
 }
 
 /// The scene's landmarks: those on the outlines as arc-length parameters, and those inside as places.
@@ -126,8 +133,8 @@ fn steps(scene: &Scene) -> Result<Vec<Vec<f64>>, String> {
     Ok((0..STEPS).map(at_step).collect())
 }
 
-fn draw_input(drawings: &[Drawing]) -> Result<Strip, String> {
-    let mut strip = Strip::new(drawings.len())?;
+fn draw_input(drawings: &[Drawing]) -> Result<Sheet, String> {
+    let mut strip = row_of(drawings.len())?;
     for (pose, drawing) in drawings.iter().enumerate() {
         let fit = Fit::new(pose, drawing.outline.outer().points());
         let picture = &drawing.picture;
@@ -142,7 +149,7 @@ fn draw_input(drawings: &[Drawing]) -> Result<Strip, String> {
             quality: tiny_skia::FilterQuality::Bicubic,
             ..PixmapPaint::default()
         };
-        strip.sheet.draw_pixmap(0, 0, pixels.as_ref(), &paint, place, None);
+        strip.pixels.draw_pixmap(0, 0, pixels.as_ref(), &paint, place, None);
         for ring in drawing.outline.rings() {
             strip.line(&fit.closed(ring.points()), 1.5, Color::from_rgba8(230, 30, 60, 255));
         }
@@ -151,11 +158,11 @@ fn draw_input(drawings: &[Drawing]) -> Result<Strip, String> {
 }
 
 /// Points of equal colour correspond.
-fn draw_matching(curves: &[ArcLength], matching: &Correspondence, reference: usize) -> Result<Strip, String> {
+fn draw_matching(curves: &[ArcLength], matching: &Correspondence, reference: usize) -> Result<Sheet, String> {
     const PIECES: usize = 240;
     const DOTS: usize = 24;
     const POINTS_A_PIECE: usize = 12;
-    let mut strip = Strip::new(curves.len())?;
+    let mut strip = row_of(curves.len())?;
     for (pose, curve) in curves.iter().enumerate() {
         let sampled: Vec<Point> = (0..2048).map(|k| curve.at(k as f64 / 2048.0)).collect();
         let fit = Fit::new(pose, &sampled);
@@ -176,8 +183,8 @@ fn draw_matching(curves: &[ArcLength], matching: &Correspondence, reference: usi
     Ok(strip)
 }
 
-fn draw_polygons(outlines: &[Outline], polygons: &[Outline]) -> Result<Strip, String> {
-    let mut strip = Strip::new(outlines.len())?;
+fn draw_polygons(outlines: &[Outline], polygons: &[Outline]) -> Result<Sheet, String> {
+    let mut strip = row_of(outlines.len())?;
     for (pose, (outline, polygon)) in outlines.iter().zip(polygons).enumerate() {
         let fit = Fit::new(pose, polygon.outer().points());
         let inside = fit.closed(outline.outer().points());
@@ -192,8 +199,8 @@ fn draw_polygons(outlines: &[Outline], polygons: &[Outline]) -> Result<Strip, St
 }
 
 /// One mesh at several positions; a triangle keeps its colour.
-fn draw_meshes(mesh: &CompatibleMesh, shown: &[Vec<Point>]) -> Result<Strip, String> {
-    let mut strip = Strip::new(shown.len())?;
+fn draw_meshes(mesh: &CompatibleMesh, shown: &[Vec<Point>]) -> Result<Sheet, String> {
+    let mut strip = row_of(shown.len())?;
     for (cell, positions) in shown.iter().enumerate() {
         let fit = Fit::new(cell, positions);
         let triangles = mesh.topology.triangles();
@@ -211,7 +218,7 @@ fn draw_meshes(mesh: &CompatibleMesh, shown: &[Vec<Point>]) -> Result<Strip, Str
 }
 
 /// The weight of every pose over the pose space: white is 0 and less, full colour 1; lines every tenth.
-fn draw_weights(scene: &Scene, provider: &dyn WeightProvider) -> Result<Strip, Box<dyn Error>> {
+fn draw_weights(scene: &Scene, provider: &dyn WeightProvider) -> Result<Sheet, Box<dyn Error>> {
     let places: Vec<Point> = scene
         .poses
         .iter()
@@ -220,7 +227,7 @@ fn draw_weights(scene: &Scene, provider: &dyn WeightProvider) -> Result<Strip, B
     let (low, high) = point::bounding_box(&places).ok_or("a scene without poses")?;
     let middle = (low + high) * 0.5;
     let unit = 1.7 * (high - low).max() / f64::from(CELL[0].max(CELL[1]));
-    let mut strip = Strip::new(places.len())?;
+    let mut strip = row_of(places.len())?;
     let mut weights = Vec::new();
     for row in 0..CELL[1] {
         for column in 0..CELL[0] {
@@ -238,9 +245,9 @@ fn draw_weights(scene: &Scene, provider: &dyn WeightProvider) -> Result<Strip, B
                 // Ten flat steps, whose borders are the lines of equal weight.
                 let share = ((weight * 10.0).round() / 10.0).clamp(0.0, 1.0) as f32;
                 let mixed = |c: f32| (255.0 * (1.0 - share + share * c)).round() as u8;
-                let index = (row * strip.sheet.width() + pose as u32 * CELL[0] + column) as usize;
+                let index = (row * strip.pixels.width() + pose as u32 * CELL[0] + column) as usize;
                 let colour = tiny_skia::ColorU8::from_rgba(mixed(r), mixed(g), mixed(b), 255);
-                strip.sheet.pixels_mut()[index] = colour.premultiply();
+                strip.pixels.pixels_mut()[index] = colour.premultiply();
             }
         }
     }
@@ -287,88 +294,14 @@ impl Fit {
     }
 }
 
-fn outline_of(points: &[Point], closed: bool) -> Option<Curve> {
-    let mut builder = PathBuilder::new();
-    let (first, rest) = points.split_first()?;
-    builder.move_to(first.x as f32, first.y as f32);
-    for p in rest {
-        builder.line_to(p.x as f32, p.y as f32);
-    }
-    if closed {
-        builder.close();
-    }
-    builder.finish()
+fn save(sheet: Sheet, folder: &Path, name: &str) -> Result<(), Box<dyn Error>> {
+    std::fs::write(folder.join(format!("{name}.png")), png_bytes(&sheet.into_frame())?)?;
+    Ok(())
 }
 
 /// A row of cells on white.
-struct Strip {
-    sheet: Pixmap,
-}
-
-impl Strip {
-    fn new(cells: usize) -> Result<Self, String> {
-        let mut sheet = Pixmap::new(CELL[0] * cells as u32, CELL[1]).ok_or("an empty sheet")?;
-        sheet.fill(Color::WHITE);
-        Ok(Self { sheet })
-    }
-
-    fn line(&mut self, curve: &Option<Curve>, width: f32, colour: Color) {
-        let stroke = Stroke {
-            line_cap: tiny_skia::LineCap::Round,
-            width,
-            ..Stroke::default()
-        };
-        if let Some(curve) = curve {
-            self.sheet
-                .stroke_path(curve, &paint(colour), &stroke, Transform::identity(), None);
-        }
-    }
-
-    fn fill(&mut self, curve: &Option<Curve>, colour: Color) {
-        if let Some(curve) = curve {
-            self.sheet
-                .fill_path(curve, &paint(colour), FillRule::Winding, Transform::identity(), None);
-        }
-    }
-
-    fn dot(&mut self, centre: Point, radius: f32, colour: Color) {
-        let circle = |r: f32| PathBuilder::from_circle(centre.x as f32, centre.y as f32, r);
-        self.fill(&circle(radius + 0.8), Color::WHITE);
-        self.fill(&circle(radius), colour);
-    }
-
-    fn paste(&mut self, cell: usize, frame: &Frame) -> Result<(), String> {
-        let mut pixels = Pixmap::new(frame.width as u32, frame.height as u32).ok_or("an empty frame")?;
-        for (to, from) in pixels.data_mut().chunks_exact_mut(4).zip(&frame.pixels) {
-            to.copy_from_slice(from);
-        }
-        let left = cell as i32 * CELL[0] as i32;
-        let paint = PixmapPaint::default();
-        self.sheet
-            .draw_pixmap(left, 0, pixels.as_ref(), &paint, Transform::identity(), None);
-        Ok(())
-    }
-
-    fn save(self, folder: &Path, name: &str) -> Result<(), Box<dyn Error>> {
-        let frame = Frame {
-            width: self.sheet.width() as usize,
-            height: self.sheet.height() as usize,
-            pixels: self
-                .sheet
-                .data()
-                .chunks_exact(4)
-                .map(|p| [p[0], p[1], p[2], p[3]])
-                .collect(),
-        };
-        std::fs::write(folder.join(format!("{name}.png")), png_bytes(&frame)?)?;
-        Ok(())
-    }
-}
-
-fn paint(colour: Color) -> Paint<'static> {
-    let mut paint = Paint::default();
-    paint.set_color(colour);
-    paint
+fn row_of(cells: usize) -> Result<Sheet, String> {
+    Sheet::new([CELL[0] * cells as u32, CELL[1]])
 }
 
 /// A clear colour of a hue in turns.

@@ -21,6 +21,13 @@
 //! - Parts can be stiffer than others, or limited in how far they stretch ([`Region`]).
 //! - Triangles that come out inverted are counted and reported, or pushed back by a barrier.
 //! - Many characters of one kind are blended in one call ([`RigidBlend::blend_crowd`]).
+//!
+//! # Pictures
+//!
+//! The example `blending` draws, after figures 3, 4 and 1 of the paper, this blend next to straight paths of the vertices,
+//! which shrink whatever turns; every [`Stretch`] beyond the poses, where the linear one folds triangles over, the limited one
+//! keeps to what the poses show and the logarithmic one stays positive but grows exponentially; and a morph next to
+//! deformations by handles. `data/pictures` has them.
 
 mod anchor;
 pub mod branch;
@@ -62,7 +69,8 @@ pub enum Stretch {
     /// The paper's shear limiting: `sum w'_i S_i` with the weights through a Hermite cubic; rotations keep the raw
     /// weights.
     Limited,
-    /// Log-Euclidean: `exp(sum w_i log S_i)`, positive for every weight.
+    /// Log-Euclidean: `exp(sum w_i log S_i)`, positive for every weight; far beyond the poses, where one shows a triangle much
+    /// longer or wider than another, it grows exponentially.
     Log,
 }
 
