@@ -10,8 +10,8 @@ fn allocations(work: impl FnOnce()) -> u64 {
     allocation_counter::measure(work).count_total
 }
 
-/// A strip of `columns` x 4 vertices in three bends.
-fn poses(columns: usize) -> PoseSet {
+/// A strip of `columns` x 4 vertices, bent more from pose to pose.
+fn poses(columns: usize, count: usize) -> PoseSet {
     let quads = (0..3).flat_map(|j| (1..columns).map(move |i| j * columns + i));
     let triangles = quads.flat_map(|b| [[b - 1, b, b + columns], [b - 1, b + columns, b - 1 + columns]]);
     let topology = Topology::new(4 * columns, triangles.collect()).expect("a grid");
@@ -22,8 +22,11 @@ fn poses(columns: usize) -> PoseSet {
         };
         (0..4 * columns).map(place).collect()
     };
-    let named = [0.01, 0.05, 0.1].map(|curvature| (format!("{curvature}"), bend(curvature)));
-    PoseSet::new(topology, named.to_vec()).expect("poses")
+    let named = (1..=count).map(|k| {
+        let curvature = 0.1 * k as f64 / count as f64;
+        (format!("{curvature}"), bend(curvature))
+    });
+    PoseSet::new(topology, named.collect()).expect("poses")
 }
 
 #[test]
@@ -33,7 +36,7 @@ fn the_counter_counts() {
 
 #[test]
 fn a_frame_allocates_nothing() {
-    let poses = poses(60);
+    let poses = poses(60, 3);
     let soft = [(0, 1.0), (59, 10.0)].map(|(vertex, stiffness)| SoftAnchor { vertex, stiffness });
     for stretch in [Stretch::Linear, Stretch::Limited, Stretch::Log] {
         for anchor in [Anchor::Centroid, Anchor::Vertex(3), Anchor::Soft(soft.to_vec())] {
@@ -60,4 +63,24 @@ fn a_frame_allocates_nothing() {
             assert_eq!(counted, 0, "{options:?}");
         }
     }
+}
+
+#[test]
+fn a_pose_more_takes_64_bytes_a_vertex() {
+    // On this thread alone, so that all is counted.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread();
+    let pool = pool.build().expect("a pool");
+    let bytes = |count: usize| {
+        let poses = poses(400, count);
+        let mut kept = None;
+        let counted = allocation_counter::measure(|| {
+            kept = Some(pool.install(|| RigidBlend::new(&poses, &BlendOptions::default())));
+        });
+        assert!(kept.is_some_and(|blend| blend.is_ok()));
+        counted.bytes_current
+    };
+    let vertices = 4 * 400;
+    let a_pose_and_vertex = (bytes(12) - bytes(4)) as f64 / (8 * vertices) as f64;
+    // A strip has 1.5 triangles a vertex; a mesh without end has 2.
+    assert!((48.0..=49.0).contains(&a_pose_and_vertex), "{a_pose_and_vertex}");
 }

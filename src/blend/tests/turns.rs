@@ -200,3 +200,52 @@ fn the_canonical_blend_converges_under_refinement() {
         "{changes:?}"
     );
 }
+
+#[test]
+fn angles_are_consistent_around_a_hole() {
+    // A ring of 48 x 49 vertices whose rim is wound by a turn and a quarter against its hole: every way around the hole
+    // leads to the same angles, and half of the winding comes out between two windings.
+    let (around, rows) = (48, 49);
+    let triangles = (1..rows).flat_map(|row| {
+        (0..around).flat_map(move |i| {
+            let j = (i + 1) % around;
+            let [a, b, c, d] = [
+                (row - 1) * around + i,
+                (row - 1) * around + j,
+                row * around + j,
+                row * around + i,
+            ];
+            [[a, c, b], [a, d, c]]
+        })
+    });
+    let topology = Topology::new(around * rows, triangles.collect()).expect("a ring");
+    let wound = |degrees: f64| -> Vec<Point> {
+        let place = |v: usize| {
+            let (row, i) = ((v / around) as f64, (v % around) as f64);
+            let share = row / (rows - 1) as f64;
+            let angle = TAU * i / around as f64 + degrees.to_radians() * share;
+            Point::new(angle.cos(), angle.sin()) * 8.0_f64.powf(share)
+        };
+        (0..around * rows).map(place).collect()
+    };
+    let set = pose_set(&topology, &[wound(0.0), wound(450.0)]);
+    for reference in REFERENCES {
+        let blend = RigidBlend::new(&set, &options(reference, Stretch::Linear)).expect("a blend");
+        let mut found = Vec::new();
+        let mut winding = |weights: [f64; 2]| {
+            blend
+                .blend(&weights, &mut blend.scratch(), &mut found)
+                .expect("a blend");
+            let centre: Point = found[..around].iter().sum::<Point>() / around as f64;
+            let spoke = (0..rows).map(|row| found[row * around] - centre).collect::<Vec<_>>();
+            let turns = spoke
+                .windows(2)
+                .map(|w| crate::math::angle::between(w[0], w[1]).to_degrees());
+            turns.sum::<f64>()
+        };
+        assert!((winding([0.0, 1.0]) - 450.0).abs() < 1e-6, "{reference:?}");
+        let half = winding([0.5, 0.5]);
+        // A pose as reference takes its own share of the shear; a lost turn would be 180 degrees off.
+        assert!((half - 225.0).abs() < 45.0, "{reference:?}: {half}");
+    }
+}
