@@ -35,17 +35,7 @@ const MOUTH: &str = "#7d2136";
 const TEETH: &str = "#fffdf6";
 const TONGUE: &str = "#f0717a";
 
-const SETTINGS: &str = "\
-[texture]
-sharpness = 0.9
-";
-
-const ANIMATION: &str = "\
-[animation]
-fps = 24
-loop = true
-size = [480, 480]
-background = \"white\"
+const KEYS: &str = "\
 # Round the square: turn, laugh, turn back laughing, calm down; every face is held for a moment.
 keys = [
   { time = 0.0, at = [0.0, 0.0] },
@@ -121,8 +111,10 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
         &Scene {
             element: Some("head"),
             poses,
-            settings: SETTINGS,
-            animation: ANIMATION,
+            mesh: "",
+            sharpness: 0.9,
+            size_px: [480, 480],
+            keys: KEYS,
         },
     )
 }

@@ -6,11 +6,14 @@
 //! - [`snake`]: five vector drawings of one body, bent along five centre lines;
 //! - [`face`]: four vector drawings of one head, two expressions by two turns;
 //! - [`clown`]: two bitmaps of one figure, and four poses that are these two deformed.
+//!
+//! The walker and the clown are two [`figure`]s.
 
 mod canvas;
 mod clown;
 mod curves;
 mod face;
+mod figure;
 mod scene;
 mod snake;
 mod svg;

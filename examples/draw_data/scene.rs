@@ -38,10 +38,14 @@ pub(crate) struct Scene {
     pub(crate) element: Option<&'static str>,
     /// The poses; the first is the reference.
     pub(crate) poses: Vec<Pose>,
-    /// The sections before the poses as they stand in the file.
-    pub(crate) settings: &'static str,
-    /// The `[animation]` section as it stands in the file.
-    pub(crate) animation: &'static str,
+    /// The `[mesh]` section as it stands in the file; empty for the default settings.
+    pub(crate) mesh: &'static str,
+    /// How sharply the texture follows the nearest pose.
+    pub(crate) sharpness: f64,
+    /// Size of the animation, pixels.
+    pub(crate) size_px: [u32; 2],
+    /// The animation's keys as they stand in the file.
+    pub(crate) keys: &'static str,
 }
 
 /// Writes `scene.toml` into `folder`.
@@ -54,9 +58,10 @@ pub(crate) fn save_with_copies(folder: &Path, scene: &Scene, copies: &[Copy]) ->
     let mut text = String::from("version = 1\n");
     let reference = scene.poses.first().ok_or("a scene needs a pose")?;
     writeln!(text, "reference = \"{}\"", reference.name)?;
-    if !scene.settings.is_empty() {
-        write!(text, "\n{}", scene.settings)?;
+    if !scene.mesh.is_empty() {
+        write!(text, "\n[mesh]\n{}", scene.mesh)?;
     }
+    write!(text, "\n[texture]\nsharpness = {:.1}\n", scene.sharpness)?;
     for pose in &scene.poses {
         write!(
             text,
@@ -95,7 +100,12 @@ pub(crate) fn save_with_copies(folder: &Path, scene: &Scene, copies: &[Copy]) ->
             places.join(", ")
         )?;
     }
-    write!(text, "\n{}", scene.animation)?;
+    let [width, height] = scene.size_px;
+    write!(
+        text,
+        "\n[animation]\nfps = 24\nloop = true\nsize = [{width}, {height}]\nbackground = \"white\"\n{}",
+        scene.keys
+    )?;
     std::fs::write(folder.join("scene.toml"), text)?;
     Ok(())
 }

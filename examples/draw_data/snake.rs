@@ -40,21 +40,12 @@ const WHITE: &str = "#fffdf4";
 /// Samples of a centre line.
 const SAMPLES: usize = 1200;
 
-const SETTINGS: &str = "\
-[mesh]
+const MESH: &str = "\
 simplify = 0.005
 edge_length = 0.035
-
-[texture]
-sharpness = 0.8
 ";
 
-const ANIMATION: &str = "\
-[animation]
-fps = 24
-loop = true
-size = [960, 480]
-background = \"white\"
+const KEYS: &str = "\
 # Slither twice (the wave runs from the head to the tail), coil up, rest, uncoil.
 keys = [
   { time = 0.0, at = [0.0, 0.0] },
@@ -139,8 +130,10 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
         &Scene {
             element: Some("body"),
             poses,
-            settings: SETTINGS,
-            animation: ANIMATION,
+            mesh: MESH,
+            sharpness: 0.8,
+            size_px: [960, 480],
+            keys: KEYS,
         },
     )
 }

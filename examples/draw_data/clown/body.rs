@@ -1,156 +1,91 @@
 //! Shoes, gloves, the two-coloured suit and the ruff.
 
-use kurbo::{Affine, BezPath, Circle, Ellipse, Point, Rect, RoundedRect, Shape, Vec2};
+use kurbo::{Affine, BezPath, Circle, Ellipse, Point, Rect, RoundedRect, Shape};
 
-use super::posture::{LimbAngles, Side};
 use super::{FINE, INK, LINE, RED, TEAL, WHITE, YELLOW};
-use crate::canvas::{Canvas, Rgb, moved};
-use crate::curves::{Limb, at, brush, hanging, polygon, smooth_closed};
+use crate::canvas::{Canvas, moved};
+use crate::curves::{at, brush, polygon, smooth_closed};
+use crate::figure::{Arm, Leg, Side, Skeleton};
 
-/// Bones, pixels.
-const THIGH: f64 = 70.0;
-const SHIN: f64 = 74.0;
-const UPPER_ARM: f64 = 72.0;
-const FOREARM: f64 = 66.0;
-
-/// A leg with its shoe.
-#[derive(Debug)]
-pub(super) struct Leg {
-    pub(super) limb: Limb,
-    pub(super) hip: Point,
-    pub(super) foot: Affine,
-    colour: Rgb,
-    /// Where the trouser leg ends, its x axis across.
-    pub(super) hem: Affine,
+/// Where the trouser leg ends, its x axis across.
+pub(super) fn hem(leg: &Leg) -> Affine {
+    Affine::translate((leg.ankle - leg.shin * 6.0).to_vec2())
+        * Affine::rotate(leg.shin.atan2() - std::f64::consts::FRAC_PI_2)
 }
 
-impl Leg {
-    pub(super) fn new(hips: Point, side: Side, angles: LimbAngles) -> Self {
-        let sign = side.sign();
-        let hip = hips + Vec2::new(36.0 * sign, 6.0);
-        let knee = hip + hanging(sign * angles.upper) * THIGH;
-        let shin = hanging(sign * angles.lower);
-        let ankle = knee + shin * SHIN;
-        // The foot is drawn for the right side; on the left it is mirrored.
-        let foot = Affine::translate(ankle.to_vec2())
-            * Affine::scale_non_uniform(sign, 1.0)
-            * Affine::rotate(-angles.tip.to_radians());
-        Self {
-            limb: Limb::new([hip, knee, ankle], [36.0, 33.0, 31.0], 0.7),
-            hip,
-            foot,
-            colour: if side == Side::Left { TEAL } else { YELLOW },
-            hem: Affine::translate((ankle - shin * 6.0).to_vec2())
-                * Affine::rotate(shin.atan2() - std::f64::consts::FRAC_PI_2),
-        }
-    }
-
-    pub(super) fn draw_shoe(&self, canvas: &mut Canvas) {
-        let upper = moved(
-            self.foot,
-            &smooth_closed(&[
-                at(-34.0, 30.0),
-                at(-35.0, 6.0),
-                at(-26.0, -14.0),
-                at(4.0, -18.0),
-                at(32.0, -6.0),
-                at(56.0, -8.0),
-                at(84.0, -20.0),
-                at(110.0, -8.0),
-                at(117.0, 14.0),
-                at(108.0, 31.0),
-                at(60.0, 33.0),
-                at(0.0, 33.0),
-            ]),
-        );
-        let sole = moved(
-            self.foot,
-            &RoundedRect::from_rect(Rect::new(-38.0, 26.0, 118.0, 41.0), 7.0).to_path(0.05),
-        );
-        canvas.ink(&upper, LINE, INK);
-        canvas.ink(&sole, LINE, INK);
-        canvas.fill(&upper, RED);
-        let toe = moved(self.foot, &Circle::new((104.0, 8.0), 36.0).to_path(0.05));
-        canvas.fill_inside(&toe, &upper, YELLOW);
-        let under = moved(self.foot, &Ellipse::new((30.0, 40.0), (110.0, 17.0), 0.0).to_path(0.05));
-        canvas.shade(&under, &upper);
-        canvas.ink(&sole, FINE * 0.5, INK);
-        canvas.fill(&sole, WHITE);
-        for x in [26.0, 42.0, 58.0] {
-            let lace = [at(x + 4.0, -8.0), at(x, 2.0), at(x - 1.0, 12.0)];
-            canvas.fill(&moved(self.foot, &brush(&lace, 5.0, 3.2)), WHITE);
-        }
+pub(super) fn draw_shoe(canvas: &mut Canvas, leg: &Leg) {
+    let upper = moved(
+        leg.foot,
+        &smooth_closed(&[
+            at(-34.0, 30.0),
+            at(-35.0, 6.0),
+            at(-26.0, -14.0),
+            at(4.0, -18.0),
+            at(32.0, -6.0),
+            at(56.0, -8.0),
+            at(84.0, -20.0),
+            at(110.0, -8.0),
+            at(117.0, 14.0),
+            at(108.0, 31.0),
+            at(60.0, 33.0),
+            at(0.0, 33.0),
+        ]),
+    );
+    let sole = moved(
+        leg.foot,
+        &RoundedRect::from_rect(Rect::new(-38.0, 26.0, 118.0, 41.0), 7.0).to_path(0.05),
+    );
+    canvas.ink(&upper, LINE, INK);
+    canvas.ink(&sole, LINE, INK);
+    canvas.fill(&upper, RED);
+    let toe = moved(leg.foot, &Circle::new((104.0, 8.0), 36.0).to_path(0.05));
+    canvas.fill_inside(&toe, &upper, YELLOW);
+    let under = moved(leg.foot, &Ellipse::new((30.0, 40.0), (110.0, 17.0), 0.0).to_path(0.05));
+    canvas.shade(&under, &upper);
+    canvas.ink(&sole, FINE * 0.5, INK);
+    canvas.fill(&sole, WHITE);
+    for x in [26.0, 42.0, 58.0] {
+        let lace = [at(x + 4.0, -8.0), at(x, 2.0), at(x - 1.0, 12.0)];
+        canvas.fill(&moved(leg.foot, &brush(&lace, 5.0, 3.2)), WHITE);
     }
 }
 
-/// An arm with its glove.
-#[derive(Debug)]
-pub(super) struct Arm {
-    pub(super) limb: Limb,
-    pub(super) shoulder: Point,
-    pub(super) hand: Affine,
-    colour: Rgb,
-    side: Side,
-}
-
-impl Arm {
-    pub(super) fn new(torso: Affine, side: Side, angles: LimbAngles) -> Self {
-        let sign = side.sign();
-        let shoulder = torso * at(48.0 * sign, -116.0);
-        let elbow = shoulder + hanging(sign * angles.upper) * UPPER_ARM;
-        let forearm = hanging(sign * angles.lower);
-        let wrist = elbow + forearm * FOREARM;
-        // The hand's x axis continues the forearm, its y axis points to the thumb.
-        let hand = Affine::translate(wrist.to_vec2())
-            * Affine::rotate(forearm.atan2())
-            * Affine::scale_non_uniform(1.0, -sign)
-            * Affine::rotate(angles.tip.to_radians());
-        Self {
-            limb: Limb::new([shoulder, elbow, wrist], [25.0, 24.0, 26.0], 0.75),
-            shoulder,
-            hand,
-            colour: if side == Side::Left { YELLOW } else { TEAL },
-            side,
-        }
-    }
-
-    /// A four-fingered glove with its fingers together.
-    pub(super) fn draw_glove(&self, canvas: &mut Canvas) {
-        let glove = moved(
-            self.hand,
-            &smooth_closed(&[
-                at(0.0, -17.0),
-                at(18.0, -26.0),
-                at(44.0, -31.0),
-                at(62.0, -26.0),
-                at(70.0, -14.0),
-                at(75.0, 0.0),
-                at(71.0, 14.0),
-                at(58.0, 22.0),
-                at(44.0, 23.0),
-                at(40.0, 29.0),
-                at(44.0, 44.0),
-                at(38.0, 55.0),
-                at(25.0, 55.0),
-                at(14.0, 42.0),
-                at(5.0, 22.0),
-                at(-4.0, 8.0),
-            ]),
-        );
-        canvas.ink(&glove, LINE, INK);
-        canvas.fill(&glove, WHITE);
-        let shade = [
-            at(0.0, -50.0),
-            at(90.0, -50.0),
-            at(72.0, -20.0),
-            at(44.0, -22.0),
-            at(16.0, -16.0),
-        ];
-        canvas.shade(&moved(self.hand, &smooth_closed(&shade)), &glove);
-        for (from, to) in [(at(72.0, -11.0), at(50.0, -9.0)), (at(73.0, 9.0), at(52.0, 7.0))] {
-            let line = brush(&[from, from.midpoint(to), to], FINE, FINE * 0.7);
-            canvas.fill(&moved(self.hand, &line), INK);
-        }
+/// A four-fingered glove with its fingers together.
+pub(super) fn draw_glove(canvas: &mut Canvas, arm: &Arm) {
+    let glove = moved(
+        arm.hand,
+        &smooth_closed(&[
+            at(0.0, -17.0),
+            at(18.0, -26.0),
+            at(44.0, -31.0),
+            at(62.0, -26.0),
+            at(70.0, -14.0),
+            at(75.0, 0.0),
+            at(71.0, 14.0),
+            at(58.0, 22.0),
+            at(44.0, 23.0),
+            at(40.0, 29.0),
+            at(44.0, 44.0),
+            at(38.0, 55.0),
+            at(25.0, 55.0),
+            at(14.0, 42.0),
+            at(5.0, 22.0),
+            at(-4.0, 8.0),
+        ]),
+    );
+    canvas.ink(&glove, LINE, INK);
+    canvas.fill(&glove, WHITE);
+    let shade = [
+        at(0.0, -50.0),
+        at(90.0, -50.0),
+        at(72.0, -20.0),
+        at(44.0, -22.0),
+        at(16.0, -16.0),
+    ];
+    canvas.shade(&moved(arm.hand, &smooth_closed(&shade)), &glove);
+    for (from, to) in [(at(72.0, -11.0), at(50.0, -9.0)), (at(73.0, 9.0), at(52.0, 7.0))] {
+        let line = brush(&[from, from.midpoint(to), to], FINE, FINE * 0.7);
+        canvas.fill(&moved(arm.hand, &line), INK);
     }
 }
 
@@ -169,7 +104,8 @@ fn frill(half_width: f64, half_height: f64, lobes: usize) -> BezPath {
     smooth_closed(&points)
 }
 
-pub(super) fn draw_suit(canvas: &mut Canvas, torso: Affine, legs: &[Leg; 2], arms: &[Arm; 2]) {
+pub(super) fn draw_suit(canvas: &mut Canvas, skeleton: &Skeleton) {
+    let (torso, legs, arms) = (skeleton.torso, &skeleton.legs, &skeleton.arms);
     let trunk = moved(
         torso,
         &smooth_closed(&[
@@ -187,18 +123,14 @@ pub(super) fn draw_suit(canvas: &mut Canvas, torso: Affine, legs: &[Leg; 2], arm
             at(-48.0, 30.0),
         ]),
     );
-    let leg_parts = legs
-        .each_ref()
-        .map(|leg| [leg.limb.body(), Circle::new(leg.hip, 36.0).to_path(0.05)]);
-    let arm_parts = arms
-        .each_ref()
-        .map(|arm| [arm.limb.body(), Circle::new(arm.shoulder, 25.0).to_path(0.05)]);
+    let leg_parts = legs.each_ref().map(Leg::parts);
+    let arm_parts = arms.each_ref().map(Arm::parts);
     for part in leg_parts.iter().chain(&arm_parts).flatten().chain([&trunk]) {
         canvas.ink(part, LINE, INK);
     }
     for (leg, parts) in legs.iter().zip(&leg_parts) {
         for part in parts {
-            canvas.fill(part, leg.colour);
+            canvas.fill(part, if leg.side == Side::Left { TEAL } else { YELLOW });
         }
         for (along, across) in [(0.5, -0.35), (0.74, 0.4)] {
             let dot = Circle::new(leg.limb.place(along, across), 8.5).to_path(0.05);
@@ -245,7 +177,7 @@ pub(super) fn draw_suit(canvas: &mut Canvas, torso: Affine, legs: &[Leg; 2], arm
     canvas.fill_inside(&moved(torso, &seam), &trunk, INK);
     for (arm, parts) in arms.iter().zip(&arm_parts) {
         for part in parts {
-            canvas.fill(part, arm.colour);
+            canvas.fill(part, if arm.side == Side::Left { YELLOW } else { TEAL });
         }
         let dot = Circle::new(arm.limb.place(0.62, 0.1), 8.5).to_path(0.05);
         canvas.fill_inside(&dot, &parts[0], if arm.side == Side::Left { RED } else { WHITE });
@@ -262,13 +194,11 @@ pub(super) fn draw_suit(canvas: &mut Canvas, torso: Affine, legs: &[Leg; 2], arm
         canvas.fill(&light, WHITE);
     }
     for leg in legs {
-        let hem = moved(leg.hem, &frill(41.0, 15.0, 9));
+        let (frame, shade) = (hem(leg), Ellipse::new((0.0, 14.0), (44.0, 11.0), 0.0).to_path(0.05));
+        let hem = moved(frame, &frill(41.0, 15.0, 9));
         canvas.ink(&hem, LINE * 0.8, INK);
         canvas.fill(&hem, WHITE);
-        canvas.shade(
-            &moved(leg.hem, &Ellipse::new((0.0, 14.0), (44.0, 11.0), 0.0).to_path(0.05)),
-            &hem,
-        );
+        canvas.shade(&moved(frame, &shade), &hem);
     }
     for arm in arms {
         let cuff = moved(arm.hand * Affine::translate((-4.0, 0.0)), &frill(14.0, 34.0, 8));

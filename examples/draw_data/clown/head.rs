@@ -2,10 +2,10 @@
 
 use kurbo::{Affine, BezPath, Circle, Ellipse, Shape, Vec2};
 
-use super::posture::{Mouth, Posture};
 use super::{CHEEK, DARK, FINE, GREEN, INK, LINE, ORANGE, RED, SKIN, WHITE, YELLOW};
 use crate::canvas::{Canvas, moved};
 use crate::curves::{at, brush, smooth_closed};
+use crate::figure::Mouth;
 
 /// The balls of hair on the right side: middle and radius. The left side mirrors them.
 const HAIR: [(f64, f64, f64); 4] = [
@@ -15,7 +15,7 @@ const HAIR: [(f64, f64, f64); 4] = [
     (62.0, -130.0, 20.0),
 ];
 
-pub(super) fn draw(canvas: &mut Canvas, head: Affine, posture: &Posture) {
+pub(super) fn draw(canvas: &mut Canvas, head: Affine, mouth: Mouth) {
     let place = |path: BezPath| moved(head, &path);
     let ball = |x: f64, y: f64, radius: f64| place(Circle::new((x, y), radius).to_path(0.05));
     let hair: Vec<BezPath> = HAIR
@@ -68,7 +68,7 @@ pub(super) fn draw(canvas: &mut Canvas, head: Affine, posture: &Posture) {
         at(20.0, 24.0),
     ];
     canvas.shade(&place(smooth_closed(&shade)), &face);
-    draw_features(canvas, head, posture.mouth);
+    draw_features(canvas, head, mouth);
     draw_hat(canvas, head);
 }
 
@@ -170,9 +170,13 @@ fn draw_features(canvas: &mut Canvas, head: Affine, mouth: Mouth) {
     );
 }
 
+/// The hat's coordinates: small, and on one side of the head.
+pub(super) fn hat(head: Affine) -> Affine {
+    head * Affine::translate((8.0, -149.0)) * Affine::rotate(f64::to_radians(8.0))
+}
+
 fn draw_hat(canvas: &mut Canvas, head: Affine) {
-    // Small, and on one side.
-    let frame = head * Affine::translate((8.0, -149.0)) * Affine::rotate(f64::to_radians(8.0));
+    let frame = hat(head);
     let crown = moved(
         frame,
         &smooth_closed(&[

@@ -11,16 +11,13 @@ mod posture;
 use std::error::Error;
 use std::path::Path;
 
-use kurbo::{Affine, Point};
+use kurbo::Point;
 
 use crate::canvas::{Canvas, Rgb};
 use crate::curves::at;
-use crate::scene::{self, Copy, Pose, Scene};
-use body::{Arm, Leg};
-use posture::{Posture, Side, postures};
-
-const WIDTH_PX: u32 = 640;
-const HEIGHT_PX: u32 = 720;
+use crate::figure::{Attitude, Build, Figure, Skeleton, draw_poses};
+use crate::scene::{self, Copy, Scene};
+use posture::{BUILD, attitudes};
 
 /// Thickness of the ink line around the figure, and of those inside.
 const LINE: f64 = 5.5;
@@ -37,20 +34,11 @@ const GREEN: Rgb = [0x4a, 0x8f, 0x4f];
 const CHEEK: Rgb = [0xf9, 0xa3, 0x93];
 const DARK: Rgb = [0x74, 0x1f, 0x35];
 
-const SETTINGS: &str = "\
-[mesh]
+const MESH: &str = "\
 simplify = 0.012
-
-[texture]
-sharpness = 0.8
 ";
 
-const ANIMATION: &str = "\
-[animation]
-fps = 24
-loop = true
-size = [480, 540]
-background = \"white\"
+const KEYS: &str = "\
 # Swaying from one foot to the other, a deep bow of the knees, up with a cheer, a lean to the crowd, and back.
 keys = [
   { time = 0.0, at = [0.0, 0.0] },
@@ -77,36 +65,25 @@ keys = [
 
 /// Draws the two poses into `folder` and writes the scene of all six.
 pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
-    std::fs::create_dir_all(folder)?;
-    let (mut poses, mut figures) = (Vec::new(), Vec::new());
-    for posture in postures() {
-        let mut canvas = Canvas::new(WIDTH_PX, HEIGHT_PX)?;
-        let figure = Figure::new(&posture);
-        figure.draw(&mut canvas, &posture);
-        let file = format!("{}.png", posture.name);
-        canvas.save(&folder.join(&file))?;
-        poses.push(Pose {
-            name: posture.name,
-            file,
-            at: posture.at,
-            landmarks: landmarks::landmarks(&canvas, &figure)?,
-        });
-        figures.push(figure);
-    }
+    let drawings = attitudes().map(Clown);
+    let poses = draw_poses(folder, &drawings)?;
+    let [stand, cheer] = attitudes().map(|attitude| Skeleton::new(&BUILD, &attitude));
     scene::save_with_copies(
         folder,
         &Scene {
             element: None,
             poses,
-            settings: SETTINGS,
-            animation: ANIMATION,
+            mesh: MESH,
+            sharpness: 0.8,
+            size_px: [480, 540],
+            keys: KEYS,
         },
-        &copies(&figures[0], &figures[1]),
+        &copies(&stand, &cheer),
     )
 }
 
 /// The four deformed poses.
-fn copies(stand: &Figure, cheer: &Figure) -> Vec<Copy> {
+fn copies(stand: &Skeleton, cheer: &Skeleton) -> Vec<Copy> {
     let [left_foot, right_foot] = stand.legs.each_ref().map(|leg| leg.foot * at(-20.0, 28.0));
     let [left_toe, right_toe] = stand.legs.each_ref().map(|leg| leg.foot * at(100.0, 28.0));
     let [left_hand, right_hand] = stand.arms.each_ref().map(|arm| arm.hand * at(36.0, 0.0));
@@ -161,42 +138,27 @@ fn copies(stand: &Figure, cheer: &Figure) -> Vec<Copy> {
     ]
 }
 
-/// The parts of a figure, placed.
+/// One drawing of the clown.
 #[derive(Debug)]
-struct Figure {
-    torso: Affine,
-    head: Affine,
-    legs: [Leg; 2],
-    arms: [Arm; 2],
-}
+struct Clown(Attitude);
 
-impl Figure {
-    fn new(posture: &Posture) -> Self {
-        let torso = posture.torso();
-        Self {
-            torso,
-            head: posture.head(),
-            legs: [
-                Leg::new(posture.hips, Side::Left, posture.left_leg),
-                Leg::new(posture.hips, Side::Right, posture.right_leg),
-            ],
-            arms: [
-                Arm::new(torso, Side::Left, posture.left_arm),
-                Arm::new(torso, Side::Right, posture.right_arm),
-            ],
-        }
+impl Figure for Clown {
+    const BUILD: Build = BUILD;
+
+    fn attitude(&self) -> &Attitude {
+        &self.0
     }
 
     /// From the feet up to the hat.
-    fn draw(&self, canvas: &mut Canvas, posture: &Posture) {
-        for leg in &self.legs {
-            leg.draw_shoe(canvas);
+    fn paint(&self, canvas: &mut Canvas, skeleton: &Skeleton) {
+        for leg in &skeleton.legs {
+            body::draw_shoe(canvas, leg);
         }
-        for arm in &self.arms {
-            arm.draw_glove(canvas);
+        for arm in &skeleton.arms {
+            body::draw_glove(canvas, arm);
         }
-        body::draw_suit(canvas, self.torso, &self.legs, &self.arms);
-        body::draw_ruff(canvas, self.torso);
-        head::draw(canvas, self.head, posture);
+        body::draw_suit(canvas, skeleton);
+        body::draw_ruff(canvas, skeleton.torso);
+        head::draw(canvas, skeleton.head, self.0.mouth);
     }
 }

@@ -1,60 +1,11 @@
 //! Shoes, trousers, mittens, sweater and scarf.
 
-use kurbo::{Affine, BezPath, Circle, Ellipse, Point, Rect, RoundedRect, Shape, Vec2};
+use kurbo::{Affine, BezPath, Ellipse, Rect, RoundedRect, Shape};
 
-use super::WIDTH_PX;
-use super::posture::{LimbAngles, Side, Stance};
 use super::style::{CREAM, FINE, HAT, INK, LINE, SCARF, SHOE, SWEATER, TROUSERS, TURN_UP};
 use crate::canvas::{Canvas, moved};
-use crate::curves::{Limb, at, brush, hanging, polygon, right_of, smooth_closed, smooth_through};
-
-/// Where the soles stand.
-const GROUND_PX: f64 = 684.0;
-/// Bones of a leg, pixels.
-const THIGH: f64 = 82.0;
-const SHIN: f64 = 78.0;
-const HIP_RADIUS: f64 = 28.0;
-
-/// A leg with its shoe.
-#[derive(Debug)]
-pub(super) struct Leg {
-    pub(super) limb: Limb,
-    pub(super) hip: Point,
-    pub(super) foot: Affine,
-}
-
-impl Leg {
-    pub(super) fn new(hips: Point, side: Side, stance: Stance) -> Self {
-        let sign = side.sign();
-        let hip = hips + Vec2::new(31.0 * sign, 4.0);
-        let (knee, ankle, toe_lift_deg) = match stance {
-            Stance::Planted => {
-                let ankle = at(0.5 * f64::from(WIDTH_PX) + 62.0 * sign, GROUND_PX - 40.0);
-                (knee_between(hip, ankle, sign), ankle, 0.0)
-            }
-            Stance::Free(angles) => {
-                let knee = hip + hanging(sign * angles.upper) * THIGH;
-                (knee, knee + hanging(sign * angles.lower) * SHIN, angles.tip)
-            }
-        };
-        let limb = Limb::new([hip, knee, ankle], [HIP_RADIUS, 23.0, 22.0], 0.7);
-        // The foot is drawn for the right side; on the left it is mirrored.
-        let foot = Affine::translate(ankle.to_vec2())
-            * Affine::scale_non_uniform(sign, 1.0)
-            * Affine::rotate(-toe_lift_deg.to_radians());
-        Self { limb, hip, foot }
-    }
-}
-
-/// The knee of a leg from `hip` to `ankle`, bent towards `sign`.
-fn knee_between(hip: Point, ankle: Point, sign: f64) -> Point {
-    let reach = ankle - hip;
-    let distance = reach.hypot().min(THIGH + SHIN);
-    let along = (distance * distance + THIGH * THIGH - SHIN * SHIN) / (2.0 * distance);
-    let across = (THIGH * THIGH - along * along).max(0.0).sqrt();
-    let direction = reach.normalize();
-    hip + direction * along - right_of(direction) * (across * sign)
-}
+use crate::curves::{at, brush, polygon, smooth_closed, smooth_through};
+use crate::figure::{Arm, Leg};
 
 pub(super) fn draw_shoes(canvas: &mut Canvas, legs: &[Leg; 2]) {
     let upper = smooth_closed(&[
@@ -109,8 +60,7 @@ pub(super) fn draw_trousers(canvas: &mut Canvas, torso: Affine, legs: &[Leg; 2])
     );
     let mut parts = vec![seat];
     for leg in legs {
-        parts.push(leg.limb.body());
-        parts.push(Circle::new(leg.hip, HIP_RADIUS).to_path(0.05));
+        parts.extend(leg.parts());
     }
     for part in &parts {
         canvas.ink(part, LINE, INK);
@@ -127,85 +77,54 @@ pub(super) fn draw_trousers(canvas: &mut Canvas, torso: Affine, legs: &[Leg; 2])
     }
 }
 
-/// An arm with its mitten.
-#[derive(Debug)]
-pub(super) struct Arm {
-    pub(super) limb: Limb,
-    pub(super) shoulder: Point,
-    pub(super) hand: Affine,
-    side: Side,
+pub(super) fn draw_hand(canvas: &mut Canvas, arm: &Arm) {
+    let mitten = moved(
+        arm.hand,
+        &smooth_closed(&[
+            at(0.0, -19.0),
+            at(22.0, -27.0),
+            at(48.0, -27.0),
+            at(68.0, -14.0),
+            at(72.0, 4.0),
+            at(64.0, 20.0),
+            at(46.0, 25.0),
+            at(41.0, 31.0),
+            at(46.0, 44.0),
+            at(40.0, 56.0),
+            at(26.0, 57.0),
+            at(14.0, 44.0),
+            at(6.0, 24.0),
+            at(-4.0, 10.0),
+        ]),
+    );
+    canvas.ink(&mitten, LINE, INK);
+    canvas.fill(&mitten, HAT);
+    let shade = moved(
+        arm.hand,
+        &smooth_closed(&[
+            at(0.0, -40.0),
+            at(80.0, -40.0),
+            at(90.0, 0.0),
+            at(66.0, -8.0),
+            at(48.0, -17.0),
+            at(20.0, -18.0),
+            at(0.0, -10.0),
+        ]),
+    );
+    canvas.shade(&shade, &mitten);
+    let crease = moved(
+        arm.hand,
+        &brush(&[at(39.0, 30.0), at(33.0, 23.0), at(30.0, 14.0)], FINE, FINE * 0.7),
+    );
+    canvas.fill(&crease, INK);
 }
 
-impl Arm {
-    pub(super) fn new(torso: Affine, side: Side, angles: LimbAngles) -> Self {
-        let sign = side.sign();
-        let shoulder = torso * at(44.0 * sign, -122.0);
-        let elbow = shoulder + hanging(sign * angles.upper) * 74.0;
-        let forearm = hanging(sign * angles.lower);
-        let wrist = elbow + forearm * 70.0;
-        let limb = Limb::new([shoulder, elbow, wrist], [24.0, 20.0, 19.0], 0.75);
-        // The hand's x axis continues the forearm, its y axis points to the thumb.
-        let hand = Affine::translate(wrist.to_vec2())
-            * Affine::rotate(forearm.atan2())
-            * Affine::scale_non_uniform(1.0, -sign)
-            * Affine::rotate(angles.tip.to_radians());
-        Self {
-            limb,
-            shoulder,
-            hand,
-            side,
-        }
-    }
-
-    pub(super) fn draw_hand(&self, canvas: &mut Canvas) {
-        let mitten = moved(
-            self.hand,
-            &smooth_closed(&[
-                at(0.0, -19.0),
-                at(22.0, -27.0),
-                at(48.0, -27.0),
-                at(68.0, -14.0),
-                at(72.0, 4.0),
-                at(64.0, 20.0),
-                at(46.0, 25.0),
-                at(41.0, 31.0),
-                at(46.0, 44.0),
-                at(40.0, 56.0),
-                at(26.0, 57.0),
-                at(14.0, 44.0),
-                at(6.0, 24.0),
-                at(-4.0, 10.0),
-            ]),
-        );
-        canvas.ink(&mitten, LINE, INK);
-        canvas.fill(&mitten, HAT);
-        let shade = moved(
-            self.hand,
-            &smooth_closed(&[
-                at(0.0, -40.0),
-                at(80.0, -40.0),
-                at(90.0, 0.0),
-                at(66.0, -8.0),
-                at(48.0, -17.0),
-                at(20.0, -18.0),
-                at(0.0, -10.0),
-            ]),
-        );
-        canvas.shade(&shade, &mitten);
-        let crease = moved(
-            self.hand,
-            &brush(&[at(39.0, 30.0), at(33.0, 23.0), at(30.0, 14.0)], FINE, FINE * 0.7),
-        );
-        canvas.fill(&crease, INK);
-    }
-
-    fn draw_cuff(&self, canvas: &mut Canvas) {
-        let cuff = moved(self.hand, &RoundedRect::new(-12.0, -23.0, 9.0, 23.0, 8.0).to_path(0.05));
-        canvas.ink(&cuff, LINE * 0.8, INK);
-        canvas.fill(&cuff, CREAM);
-        let shade = moved(self.hand, &RoundedRect::new(-12.0, -23.0, 9.0, -8.0, 4.0).to_path(0.05));
-        canvas.shade(&shade, &cuff);
-    }
+fn draw_cuff(canvas: &mut Canvas, arm: &Arm) {
+    let cuff = moved(arm.hand, &RoundedRect::new(-12.0, -23.0, 9.0, 23.0, 8.0).to_path(0.05));
+    canvas.ink(&cuff, LINE * 0.8, INK);
+    canvas.fill(&cuff, CREAM);
+    let shade = moved(arm.hand, &RoundedRect::new(-12.0, -23.0, 9.0, -8.0, 4.0).to_path(0.05));
+    canvas.shade(&shade, &cuff);
 }
 
 pub(super) fn draw_sweater(canvas: &mut Canvas, torso: Affine, arms: &[Arm; 2]) {
@@ -228,8 +147,7 @@ pub(super) fn draw_sweater(canvas: &mut Canvas, torso: Affine, arms: &[Arm; 2]) 
     );
     let mut parts = vec![trunk.clone()];
     for arm in arms {
-        parts.push(arm.limb.body());
-        parts.push(Circle::new(arm.shoulder, 24.0).to_path(0.05));
+        parts.extend(arm.parts());
     }
     for part in &parts {
         canvas.ink(part, LINE, INK);
@@ -263,7 +181,7 @@ pub(super) fn draw_sweater(canvas: &mut Canvas, torso: Affine, arms: &[Arm; 2]) 
     ];
     canvas.shade(&moved(torso, &smooth_closed(&side)), &trunk);
     for arm in arms {
-        arm.draw_cuff(canvas);
+        draw_cuff(canvas, arm);
     }
     // Where the sleeves meet the body: a short crease.
     for sign in [-1.0, 1.0] {

@@ -2,10 +2,11 @@
 
 use kurbo::{Affine, BezPath, Circle, Ellipse, Point, Shape, Vec2};
 
-use super::posture::{Mouth, Posture};
+use super::posture::Posture;
 use super::style::{CHEEK, CREAM, FINE, HAIR, HAT, INK, LINE, MOUTH, RIB, SKIN, TONGUE};
 use crate::canvas::{Canvas, moved};
 use crate::curves::{Limb, at, brush, hanging, smooth_closed};
+use crate::figure::Mouth;
 
 pub(super) fn draw_head(canvas: &mut Canvas, head: Affine, posture: &Posture) {
     let place = |path: BezPath| moved(head, &path);
@@ -97,7 +98,7 @@ fn draw_features(canvas: &mut Canvas, head: Affine, posture: &Posture) {
         FINE * 0.7,
     );
     canvas.fill(&place(nose), [0xc9, 0x6b, 0x55]);
-    match posture.mouth {
+    match posture.body.mouth {
         Mouth::Smile => {
             let line = [
                 at(-28.0, -30.0),
@@ -122,6 +123,14 @@ fn draw_features(canvas: &mut Canvas, head: Affine, posture: &Posture) {
             let tongue = place(Ellipse::new((0.0, -8.0), (15.0, 9.0), 0.0).to_path(0.05));
             canvas.fill_inside(&tongue, &mouth, TONGUE);
         }
+    }
+}
+
+/// How high the middles of the mouth's upper and lower line lie, in the head's coordinates.
+pub(super) fn lips(mouth: Mouth) -> [f64; 2] {
+    match mouth {
+        Mouth::Smile => [-21.0, -14.0],
+        Mouth::Open => [-29.0, -6.0],
     }
 }
 

@@ -1,20 +1,15 @@
-//! The points of the figure that the artist names: the same physical point in all five pictures.
-//!
-//! Every outline point is found on the finished picture: a ray that is fixed to a part of the figure leaves the drawing
-//! there. Going round the figure the names come in the same order in every pose.
-
-use std::error::Error;
+//! Points of the figure that its drawings have in common.
 
 use kurbo::{Affine, Point};
 
-use super::Figure;
-use super::head::pompom_axis;
-use super::posture::{Posture, Side};
+use super::head::{lips, pompom_axis};
+use super::posture::Posture;
 use crate::canvas::Canvas;
 use crate::curves::at;
+use crate::figure::{Landmarks, Ray, Side, Skeleton, arm_rays, leg_rays};
 
 /// Rays of a mitten, from the thumb's side of the wrist to the other one: a point inside, and one it passes through.
-const HAND: [(&str, Point, Point); 7] = [
+const HAND: [Ray; 7] = [
     ("cuff_thumb_side", Point::new(-1.5, 0.0), Point::new(-1.5, 23.0)),
     ("thumb_root", Point::new(24.0, 30.0), Point::new(12.0, 41.0)),
     ("thumb_tip", Point::new(31.0, 40.0), Point::new(34.0, 58.0)),
@@ -25,7 +20,7 @@ const HAND: [(&str, Point, Point); 7] = [
 ];
 
 /// Rays of a shoe, from the instep over the toe to the heel.
-const SHOE: [(&str, Point, Point); 6] = [
+const SHOE: [Ray; 6] = [
     ("instep", Point::new(52.0, 24.0), Point::new(58.0, 7.0)),
     ("toe", Point::new(60.0, 32.0), Point::new(84.0, 32.0)),
     ("sole_front", Point::new(74.0, 30.0), Point::new(74.0, 40.0)),
@@ -40,143 +35,80 @@ const UNDER_ARM: f64 = 1.45;
 /// The middle of a sleeve's stripe, along the arm.
 const SLEEVE: f64 = 0.62;
 
-/// All landmarks, in order around the figure.
-pub(super) fn landmarks(
-    canvas: &Canvas,
-    figure: &Figure,
-    posture: &Posture,
-) -> Result<Vec<(String, Point)>, Box<dyn Error>> {
-    let mut rays: Vec<(String, Point, Point)> = Vec::new();
-    let [pompom, above] = pompom_axis(figure.head, posture.flop_deg);
-    let beside = |angle_deg: f64| Affine::rotate_about(f64::to_radians(angle_deg), pompom) * above;
-    rays.push(("pompom".to_owned(), pompom, above));
-    rays.push(("right_pompom".to_owned(), pompom, beside(80.0)));
-    rays.extend(side_rays(canvas, figure, Side::Right));
-    let thighs = figure
-        .legs
-        .each_ref()
-        .map(|leg| (leg.limb.place(0.4, 0.0) - leg.hip).normalize());
-    let seat = figure.torso * at(0.0, 0.0);
-    rays.push(("crotch".to_owned(), seat, seat + thighs[0] + thighs[1]));
-    rays.extend(side_rays(canvas, figure, Side::Left).into_iter().rev());
-    rays.push(("left_pompom".to_owned(), pompom, beside(-80.0)));
-    let mut points: Vec<(String, Point)> = Vec::new();
-    for (name, inside, towards) in rays {
-        points.push((name, canvas.edge(inside, towards)?));
+impl Landmarks for Posture {
+    /// The pompom: from its end to its right side, and its left side.
+    fn top_rays(&self, skeleton: &Skeleton) -> [Vec<Ray>; 2] {
+        let [pompom, above] = pompom_axis(skeleton.head, self.flop_deg);
+        let beside = |angle_deg: f64| Affine::rotate_about(f64::to_radians(angle_deg), pompom) * above;
+        [
+            vec![("pompom", pompom, above), ("right_pompom", pompom, beside(80.0))],
+            vec![("left_pompom", pompom, beside(-80.0))],
+        ]
     }
-    points.extend(inner_points(figure, posture));
-    Ok(points)
-}
 
-/// Landmarks inside the figure, where something is drawn that should not fade from one place to another.
-fn inner_points(figure: &Figure, posture: &Posture) -> Vec<(String, Point)> {
-    let mut points = Vec::new();
-    let mut add = |name: String, point: Point| points.push((name, point));
-    let (head, torso) = (figure.head, figure.torso);
-    add("pompom_middle".to_owned(), pompom_axis(head, posture.flop_deg)[0]);
-    add("brim_top".to_owned(), head * at(0.0, -142.0));
-    add("brim_bottom".to_owned(), head * at(0.0, -107.0));
-    add("nose".to_owned(), head * at(0.0, -44.0));
-    add("mouth_top".to_owned(), head * at(0.0, posture.mouth.lips()[0]));
-    add("mouth_bottom".to_owned(), head * at(0.0, posture.mouth.lips()[1]));
-    add("scarf_knot".to_owned(), torso * at(0.0, -124.0));
-    add("scarf_end".to_owned(), torso * at(26.0, -76.0));
-    add("stripe_middle".to_owned(), torso * at(0.0, -55.0));
-    add("hem_middle".to_owned(), torso * at(0.0, -5.0));
-    for (name, index, sign) in [("left", 0, -1.0), ("right", 1, 1.0)] {
-        let mut add = |part: &str, point: Point| add(format!("{name}_{part}"), point);
-        let (arm, leg) = (&figure.arms[index], &figure.legs[index]);
-        add("brim_end", head * at(68.0 * sign, -114.0));
-        add("fringe", head * at(36.0 * sign, -96.0));
-        add("eye", head * (at(35.0 * sign, -68.0) + posture.look));
-        add("cheek", head * at(54.0 * sign, -36.0));
-        add("mouth_corner", head * at(28.0 * sign, -30.5));
-        add("scarf_side", torso * at(40.0 * sign, -138.0));
-        add("stripe_end", torso * at(48.0 * sign, -61.0));
-        add("hem_end", torso * at(48.0 * sign, -8.0));
-        add("sleeve_middle", arm.limb.place(SLEEVE, 0.0));
-        add("cuff_start", arm.hand * at(-13.0, 0.0));
-        add("cuff_end", arm.hand * at(10.0, 0.0));
-        add("crease", arm.hand * at(33.0, 22.0));
-        add("knee_middle", leg.limb.place(0.5, 0.0));
-        // The corners of the turned-up hem, a little inside.
-        add("turn_up_start_inside", leg.limb.place(0.865, 0.6 * sign));
-        add("turn_up_start_outside", leg.limb.place(0.865, -0.6 * sign));
-        add("turn_up_end_inside", leg.limb.place(1.0, 0.6 * sign));
-        add("turn_up_end_outside", leg.limb.place(1.0, -0.6 * sign));
-        add("tongue", leg.foot * at(18.0, 8.0));
-        add("cap", leg.foot * at(57.0, 22.0));
+    /// The rays of one side, from the cap down to the inner side of the leg.
+    fn side_rays(&self, canvas: &Canvas, skeleton: &Skeleton, side: Side) -> Vec<Ray> {
+        let (head, torso, leg) = (skeleton.head, skeleton.torso, skeleton.leg(side));
+        let turn_up = |name, across: f64| (name, leg.limb.place(0.93, 0.0), leg.limb.place(0.93, across));
+        let turn_ups = [
+            turn_up("turn_up_outside", -side.sign()),
+            turn_up("turn_up_inside", side.sign()),
+        ];
+        let mut rays = vec![
+            ("cap_brim", head * side.at(60.0, -116.0), head * side.at(93.0, -116.0)),
+            ("ear", head * side.at(88.0, -58.0), head * side.at(105.0, -58.0)),
+            ("jaw", head * side.at(40.0, -50.0), head * side.at(74.0, -22.0)),
+        ];
+        rays.extend(arm_rays(canvas, skeleton.arm(side), SLEEVE, &HAND, UNDER_ARM));
+        rays.extend([
+            ("waist", torso * side.at(0.0, -36.0), torso * side.at(66.0, -36.0)),
+            ("hem", torso * side.at(40.0, -32.0), torso * side.at(64.0, -10.0)),
+        ]);
+        rays.extend(leg_rays(leg, 0.5, turn_ups, &SHOE));
+        rays
     }
-    points
-}
 
-/// The rays of one side, from the cap down to the inner side of the leg.
-fn side_rays(canvas: &Canvas, figure: &Figure, side: Side) -> Vec<(String, Point, Point)> {
-    let (name, index, sign) = match side {
-        Side::Left => ("left", 0, side.sign()),
-        Side::Right => ("right", 1, side.sign()),
-    };
-    let (arm, leg) = (&figure.arms[index], &figure.legs[index]);
-    let mut rays = Vec::new();
-    let mut add = |part: &str, inside: Point, towards: Point| rays.push((format!("{name}_{part}"), inside, towards));
-    let placed = |frame: Affine, x: f64, y: f64| frame * at(x * sign, y);
+    fn middle_points(&self, skeleton: &Skeleton) -> Vec<(&'static str, Point)> {
+        let (head, torso) = (skeleton.head, skeleton.torso);
+        let [upper_lip, lower_lip] = lips(self.body.mouth);
+        vec![
+            ("pompom_middle", pompom_axis(head, self.flop_deg)[0]),
+            ("brim_top", head * at(0.0, -142.0)),
+            ("brim_bottom", head * at(0.0, -107.0)),
+            ("nose", head * at(0.0, -44.0)),
+            ("mouth_top", head * at(0.0, upper_lip)),
+            ("mouth_bottom", head * at(0.0, lower_lip)),
+            ("scarf_knot", torso * at(0.0, -124.0)),
+            ("scarf_end", torso * at(26.0, -76.0)),
+            ("stripe_middle", torso * at(0.0, -55.0)),
+            ("hem_middle", torso * at(0.0, -5.0)),
+        ]
+    }
 
-    add(
-        "cap_brim",
-        placed(figure.head, 60.0, -116.0),
-        placed(figure.head, 93.0, -116.0),
-    );
-    add(
-        "ear",
-        placed(figure.head, 88.0, -58.0),
-        placed(figure.head, 105.0, -58.0),
-    );
-    add(
-        "jaw",
-        placed(figure.head, 40.0, -50.0),
-        placed(figure.head, 74.0, -22.0),
-    );
-    // `across` runs to the right of the direction from the shoulder to the wrist.
-    add(
-        "sleeve_outside",
-        arm.limb.place(SLEEVE, 0.0),
-        arm.limb.place(SLEEVE, -sign),
-    );
-    for (part, inside, towards) in HAND {
-        add(part, arm.hand * inside, arm.hand * towards);
+    fn side_points(&self, skeleton: &Skeleton, side: Side) -> Vec<(&'static str, Point)> {
+        let (head, torso, sign) = (skeleton.head, skeleton.torso, side.sign());
+        let (arm, leg) = (skeleton.arm(side), skeleton.leg(side));
+        vec![
+            ("brim_end", head * side.at(68.0, -114.0)),
+            ("fringe", head * side.at(36.0, -96.0)),
+            ("eye", head * (side.at(35.0, -68.0) + self.look)),
+            ("cheek", head * side.at(54.0, -36.0)),
+            ("mouth_corner", head * side.at(28.0, -30.5)),
+            ("scarf_side", torso * side.at(40.0, -138.0)),
+            ("stripe_end", torso * side.at(48.0, -61.0)),
+            ("hem_end", torso * side.at(48.0, -8.0)),
+            ("sleeve_middle", arm.limb.place(SLEEVE, 0.0)),
+            ("cuff_start", arm.hand * at(-13.0, 0.0)),
+            ("cuff_end", arm.hand * at(10.0, 0.0)),
+            ("crease", arm.hand * at(33.0, 22.0)),
+            ("knee_middle", leg.limb.place(0.5, 0.0)),
+            // The corners of the turned-up hem, a little inside.
+            ("turn_up_start_inside", leg.limb.place(0.865, 0.6 * sign)),
+            ("turn_up_start_outside", leg.limb.place(0.865, -0.6 * sign)),
+            ("turn_up_end_inside", leg.limb.place(1.0, 0.6 * sign)),
+            ("turn_up_end_outside", leg.limb.place(1.0, -0.6 * sign)),
+            ("tongue", leg.foot * at(18.0, 8.0)),
+            ("cap", leg.foot * at(57.0, 22.0)),
+        ]
     }
-    add(
-        "sleeve_inside",
-        arm.limb.place(SLEEVE, 0.0),
-        arm.limb.place(SLEEVE, sign),
-    );
-    // Under the sleeve, up to where the trunk's line begins.
-    let under = |step: i32| arm.limb.place(0.9 - 0.005 * f64::from(step), UNDER_ARM * sign);
-    let armpit = (0..160)
-        .map(under)
-        .find(|&point| canvas.is_drawn(point))
-        .unwrap_or(arm.shoulder);
-    add("armpit", arm.limb.place(0.25, 0.0), armpit);
-    add(
-        "waist",
-        placed(figure.torso, 0.0, -36.0),
-        placed(figure.torso, 66.0, -36.0),
-    );
-    add(
-        "hem",
-        placed(figure.torso, 40.0, -32.0),
-        placed(figure.torso, 64.0, -10.0),
-    );
-    add("knee_outside", leg.limb.place(0.5, 0.0), leg.limb.place(0.5, -sign));
-    add(
-        "turn_up_outside",
-        leg.limb.place(0.93, 0.0),
-        leg.limb.place(0.93, -sign),
-    );
-    for (part, inside, towards) in SHOE {
-        add(part, leg.foot * inside, leg.foot * towards);
-    }
-    add("turn_up_inside", leg.limb.place(0.93, 0.0), leg.limb.place(0.93, sign));
-    add("knee_inside", leg.limb.place(0.5, 0.0), leg.limb.place(0.5, sign));
-    rays
 }

@@ -14,29 +14,14 @@ mod style;
 use std::error::Error;
 use std::path::Path;
 
-use kurbo::Affine;
-
 use crate::canvas::Canvas;
-use crate::scene::{self, Pose, Scene};
-use body::{Arm, Leg, draw_scarf, draw_shoes, draw_sweater, draw_trousers};
+use crate::figure::{Attitude, Build, Figure, Skeleton, draw_poses};
+use crate::scene::{self, Scene};
+use body::{draw_hand, draw_scarf, draw_shoes, draw_sweater, draw_trousers};
 use head::{draw_cap, draw_cap_tip, draw_head};
-use landmarks::landmarks;
-use posture::{Posture, Side, postures};
+use posture::{BUILD, Posture, postures};
 
-const WIDTH_PX: u32 = 640;
-const HEIGHT_PX: u32 = 720;
-
-const SETTINGS: &str = "\
-[texture]
-sharpness = 0.8
-";
-
-const ANIMATION: &str = "\
-[animation]
-fps = 24
-loop = true
-size = [480, 540]
-background = \"white\"
+const KEYS: &str = "\
 # Two steps to either side with a little hop between them, a jump, a wave; every pose is held for a moment.
 keys = [
   { time = 0.0, at = [0.0, 0.0] },
@@ -70,69 +55,38 @@ keys = [
 
 /// Draws the five poses into `folder`.
 pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
-    std::fs::create_dir_all(folder)?;
-    let mut poses = Vec::new();
-    for posture in postures() {
-        let mut canvas = Canvas::new(WIDTH_PX, HEIGHT_PX)?;
-        let figure = Figure::new(&posture);
-        figure.draw(&mut canvas, &posture);
-        let file = format!("{}.png", posture.name);
-        canvas.save(&folder.join(&file))?;
-        poses.push(Pose {
-            name: posture.name,
-            file,
-            at: posture.at,
-            landmarks: landmarks(&canvas, &figure, &posture)?,
-        });
-    }
+    let poses = draw_poses(folder, &postures())?;
     scene::save(
         folder,
         &Scene {
             element: None,
             poses,
-            settings: SETTINGS,
-            animation: ANIMATION,
+            mesh: "",
+            sharpness: 0.8,
+            size_px: [480, 540],
+            keys: KEYS,
         },
     )
 }
 
-/// The parts of a figure, placed.
-#[derive(Debug)]
-struct Figure {
-    torso: Affine,
-    head: Affine,
-    legs: [Leg; 2],
-    arms: [Arm; 2],
-}
+impl Figure for Posture {
+    const BUILD: Build = BUILD;
 
-impl Figure {
-    fn new(posture: &Posture) -> Self {
-        let torso = posture.torso();
-        Self {
-            torso,
-            head: posture.head(),
-            legs: [
-                Leg::new(posture.hips, Side::Left, posture.left_leg),
-                Leg::new(posture.hips, Side::Right, posture.right_leg),
-            ],
-            arms: [
-                Arm::new(torso, Side::Left, posture.left_arm),
-                Arm::new(torso, Side::Right, posture.right_arm),
-            ],
-        }
+    fn attitude(&self) -> &Attitude {
+        &self.body
     }
 
     /// From the feet up to the cap.
-    fn draw(&self, canvas: &mut Canvas, posture: &Posture) {
-        draw_shoes(canvas, &self.legs);
-        draw_trousers(canvas, self.torso, &self.legs);
-        for arm in &self.arms {
-            arm.draw_hand(canvas);
+    fn paint(&self, canvas: &mut Canvas, skeleton: &Skeleton) {
+        draw_shoes(canvas, &skeleton.legs);
+        draw_trousers(canvas, skeleton.torso, &skeleton.legs);
+        for arm in &skeleton.arms {
+            draw_hand(canvas, arm);
         }
-        draw_sweater(canvas, self.torso, &self.arms);
-        draw_cap_tip(canvas, self.head, posture.flop_deg);
-        draw_scarf(canvas, self.torso);
-        draw_head(canvas, self.head, posture);
-        draw_cap(canvas, self.head, posture.flop_deg);
+        draw_sweater(canvas, skeleton.torso, &skeleton.arms);
+        draw_cap_tip(canvas, skeleton.head, self.flop_deg);
+        draw_scarf(canvas, skeleton.torso);
+        draw_head(canvas, skeleton.head, self);
+        draw_cap(canvas, skeleton.head, self.flop_deg);
     }
 }
