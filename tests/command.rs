@@ -151,14 +151,21 @@ fn a_mapping_blends_to_its_poses() {
 
 #[test]
 fn a_guarded_frame_has_no_inverted_triangle() {
-    let workshop = two();
-    workshop.succeeds(&["map", "scene.toml", "-o", "m.json"]);
+    // Four widths of the square less three of one four times as wide: less than nothing.
+    let workshop = Workshop::new();
+    let rectangle = |name: &str, width: f64| {
+        let corners = [[0.0, 0.0], [width, 0.0], [width, 10.0], [0.0, 10.0]];
+        serde_json::json!({ "name": name, "outline": corners, "holes": [] })
+    };
+    let polygons = serde_json::json!({ "poses": [rectangle("square", 10.0), rectangle("wide", 40.0)] });
+    workshop.file("p.json", polygons.to_string().as_bytes());
+    workshop.succeeds(&["triangulate", "p.json", "-o", "m.json"]);
     let flipped = |guard: &str| {
         let arguments = ["blend", "m.json", "--weights=4,-3", "--frame-guard", guard, "-o", "-"];
         let frame: serde_json::Value = serde_json::from_str(&workshop.succeeds(&arguments)).expect("JSON");
         frame["flipped"].as_u64().expect("a count")
     };
-    assert!(flipped("off") > 0);
+    assert_eq!(flipped("off"), 2);
     assert_eq!(flipped("repair"), 0);
 }
 
