@@ -122,7 +122,8 @@ fn subdivided(ring: &Ring, edges: &RTree<Edge>) -> Vec<Point> {
                 point::cross(c - a, across) / denominator,
                 point::cross(c - a, along) / denominator,
             );
-            if t > AT_THE_END && t < 1.0 - AT_THE_END && (0.0..=1.0).contains(&u) {
+            // A vertex of the mesh may lie on the outline: its edges begin there, and rounding must not lose them.
+            if t > AT_THE_END && t < 1.0 - AT_THE_END && (-AT_THE_END..=1.0 + AT_THE_END).contains(&u) {
                 crossings.push(t);
             }
         }
