@@ -11,8 +11,8 @@
 //! compared with one another; times of different machines cannot.
 
 use std::io::Cursor;
-use std::time::Duration;
 
+use brief::brief;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
 use image::{ImageFormat, Rgba, RgbaImage};
@@ -23,6 +23,9 @@ use inbetween::matching::{MatchOptions, match_rings};
 use inbetween::math::Point;
 use inbetween::outline::{Outline, Ring};
 use inbetween::pose::PoseSet;
+
+#[path = "common/brief.rs"]
+mod brief;
 
 /// Outline points and poses: first the points grow, then the poses.
 const SIZES: [(usize, usize); 8] = [
@@ -137,15 +140,6 @@ fn pixels_to_mesh(drawings: &[Vec<u8>]) -> CompatibleMesh {
         simplify(&outlines, &[matched.correspondence], &[], &SimplifyOptions::default()).expect("simplified");
     let (mesh, _) = triangulate(&simplified.polygons, &[]).expect("triangulated");
     refine(&mesh, &RefineOptions::default()).expect("refined").0
-}
-
-/// Few samples: the stages differ by factors, not by percents.
-fn brief<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, WallTime> {
-    let mut group = criterion.benchmark_group(name);
-    group.sample_size(10);
-    group.warm_up_time(Duration::from_millis(200));
-    group.measurement_time(Duration::from_secs(1));
-    group
 }
 
 fn stages(criterion: &mut Criterion) {

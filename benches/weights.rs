@@ -7,13 +7,15 @@
 //!   again after a pose has moved.
 
 use std::hint::black_box;
-use std::time::Duration;
 
-use criterion::measurement::WallTime;
-use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use brief::brief;
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use inbetween::weights::{
     BiharmonicOptions, BiharmonicWeights, Edit, Energy, Radial, Range, RbfOptions, RbfWeights, WeightProvider,
 };
+
+#[path = "common/brief.rs"]
+mod brief;
 
 /// Poses in rows, off the grid by a fifth of its step.
 fn plane(count: usize) -> Vec<Vec<f64>> {
@@ -23,14 +25,6 @@ fn plane(count: usize) -> Vec<Vec<f64>> {
         vec![(k % side) as f64 + wobble(7.0), (k / side) as f64 + wobble(5.0)]
     };
     (0..count).map(place).collect()
-}
-
-fn brief<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, WallTime> {
-    let mut group = criterion.benchmark_group(name);
-    group.sample_size(10);
-    group.warm_up_time(Duration::from_millis(200));
-    group.measurement_time(Duration::from_secs(1));
-    group
 }
 
 fn biharmonic(criterion: &mut Criterion) {

@@ -22,7 +22,7 @@
 use super::BlendError;
 use super::system::System;
 use crate::math::{Matrix, Point, point, predicate};
-use crate::mesh::geometry;
+use crate::mesh::{first_flat, geometry};
 use crate::pose::PoseSet;
 
 /// A triangle is healthy above this fraction of its smallest area in any pose.
@@ -173,7 +173,8 @@ impl Guard {
             if slope >= -SMALL_GAIN * energy || slope.is_nan() {
                 break;
             }
-            let mut length = self.longest_step(positions, direction).min(1.0);
+            let corners = self.rows.iter().map(|row| row.corners);
+            let mut length = (SAFE_FRACTION * first_flat(corners, positions, direction)).min(1.0);
             let mut accepted = None;
             for _ in 0..MOST_HALVINGS {
                 trial.clear();
@@ -243,26 +244,6 @@ impl Guard {
         }
         energy
     }
-
-    /// How far along `direction` every triangle keeps its area, and a little less.
-    fn longest_step(&self, positions: &[Point], direction: &[Point]) -> f64 {
-        let mut longest = f64::INFINITY;
-        for row in &self.rows {
-            let [a, b, c] = row.corners;
-            let (p, q) = (positions[b] - positions[a], positions[c] - positions[a]);
-            let (dp, dq) = (direction[b] - direction[a], direction[c] - direction[a]);
-            // The doubled area along the way is constant + linear t + quadratic t^2.
-            let (constant, linear, quadratic) = (
-                point::cross(p, q),
-                point::cross(p, dq) + point::cross(dp, q),
-                point::cross(dp, dq),
-            );
-            if let Some(root) = first_root(constant, linear, quadratic) {
-                longest = longest.min(root);
-            }
-        }
-        SAFE_FRACTION * longest
-    }
 }
 
 impl Row {
@@ -279,18 +260,6 @@ fn barrier(x: f64) -> (f64, f64) {
     }
     let (gap, logarithm) = (1.0 - x, libm::log(x));
     (-gap * gap * logarithm, 2.0 * gap * logarithm - gap * gap / x)
-}
-
-/// The smallest positive root of `constant + linear t + quadratic t^2` with a positive constant.
-fn first_root(constant: f64, linear: f64, quadratic: f64) -> Option<f64> {
-    let discriminant = linear * linear - 4.0 * quadratic * constant;
-    if discriminant < 0.0 {
-        return None;
-    }
-    // Without cancellation: q has the sign of the linear term.
-    let q = -0.5 * (linear + discriminant.sqrt().copysign(linear));
-    let roots = [q / quadratic, constant / q];
-    roots.into_iter().filter(|root| *root > 0.0).min_by(f64::total_cmp)
 }
 
 /// The quasi-Newton direction (Nocedal and Wright, "Numerical optimization", algorithm 7.4), with half the inverse of the

@@ -1,9 +1,12 @@
-//! Triangle meshes: topology that knows only indices, geometry on given positions, point location, validity.
+//! Triangle meshes: topology that knows only indices, geometry on given positions, point location, how far vertices can
+//! move before a triangle is turned over, validity.
 
+mod flattening;
 pub mod geometry;
 mod locate;
 mod topology;
 pub mod validity;
 
+pub use flattening::first_flat;
 pub use locate::{Located, PointLocator};
 pub use topology::{Topology, TopologyError, directed_edges};

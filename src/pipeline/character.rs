@@ -1,7 +1,8 @@
 //! A character ready to be shown in any pose.
 
 use super::drawings::{read_drawings, sharpen};
-use super::{PipelineError, automatic_places, map_drawings, weight_provider, weighting};
+use super::layout::placed;
+use super::{PipelineError, map_drawings, weight_provider, weighting};
 use crate::blend::{self, BlendOptions, BlendReport, RigidBlend};
 use crate::input::Drawing;
 use crate::math::Point;
@@ -42,10 +43,7 @@ impl Character {
         };
         let mut drawings = read_drawings(scene)?;
         let (mapping, report) = map_drawings(scene, &drawings)?;
-        let scene = &match scene.layout {
-            Layout::Given => scene.clone(),
-            Layout::Automatic => scene.laid_out(&automatic_places(&mapping)),
-        };
+        let scene = &placed(scene, &mapping);
         let weights = match weights.take() {
             Some(weights) => weights,
             None => weight_provider(scene, None)?,

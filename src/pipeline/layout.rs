@@ -13,6 +13,14 @@ pub fn automatic_places(mapping: &Mapping) -> Vec<Vec<f64>> {
     places.into_iter().map(Vec::from).collect()
 }
 
+/// The scene with a place for every pose: its own, or those of its mapping.
+pub(super) fn placed(scene: &Scene, mapping: &Mapping) -> Scene {
+    match scene.layout {
+        Layout::Given => scene.clone(),
+        Layout::Automatic => scene.laid_out(&automatic_places(mapping)),
+    }
+}
+
 /// The scene with a place for every pose. If the file gives none, its drawings are read and mapped for that, which takes as long
 /// as [`map_drawings`].
 ///
@@ -24,5 +32,5 @@ pub fn laid_out(scene: Scene) -> Result<Scene, PipelineError> {
     }
     let drawings = read_drawings(&scene)?;
     let (mapping, _) = map_drawings(&scene, &drawings)?;
-    Ok(scene.laid_out(&automatic_places(&mapping)))
+    Ok(placed(&scene, &mapping))
 }

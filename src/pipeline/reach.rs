@@ -15,12 +15,13 @@
 //! Limits: a search, not a proof: between the first step's places a narrow valley may be missed.
 
 use super::character::blend_options;
-use super::{PipelineError, automatic_places, map_drawings, read_drawings, weight_provider};
+use super::layout::placed;
+use super::{PipelineError, map_drawings, read_drawings, weight_provider};
 use crate::blend::{BlendScratch, RigidBlend};
 use crate::math::{Point, point};
 use crate::mesh::{Located, PointLocator};
 use crate::pose::{LandmarkKind, PlacedLandmark, PoseSet};
-use crate::scene::{Layout, Scene};
+use crate::scene::Scene;
 use crate::solve::{DenseMatrix, SolvedDense};
 use crate::weights::WeightProvider;
 
@@ -209,10 +210,7 @@ pub fn reach_landmarks(
 ) -> Result<Reach, PipelineError> {
     let drawings = read_drawings(scene)?;
     let (mapping, report) = map_drawings(scene, &drawings)?;
-    let scene = &match scene.layout {
-        Layout::Given => scene.clone(),
-        Layout::Automatic => scene.laid_out(&automatic_places(&mapping)),
-    };
+    let scene = &placed(scene, &mapping);
     let weights = weight_provider(scene, None)?;
     let blend = RigidBlend::new(&mapping.poses, &blend_options(scene, &mapping))?;
     let is_point = |landmark: &&PlacedLandmark| landmark.kind != LandmarkKind::Line;

@@ -40,7 +40,7 @@ use super::rbf::PseudoPose;
 use super::space::{Frame, Plan, Space, Wishes};
 use super::tessellation::REACH;
 use super::walls::Walls;
-use super::{WeightError, WeightProvider, check_place};
+use super::{WeightError, WeightProvider, check_place, check_pose};
 use crate::math::Point;
 
 /// What is minimised.
@@ -248,7 +248,7 @@ impl BiharmonicWeights {
     /// # Errors
     /// As [`Self::new`], and [`WeightError::NoSuchPose`].
     pub fn move_pose(&mut self, pose: usize, place: &[f64]) -> Result<Edit, WeightError> {
-        self.check_pose(pose)?;
+        check_pose(pose, self.places.len())?;
         let mut places = self.places.clone();
         places[pose] = place.to_vec();
         self.edit(
@@ -287,7 +287,7 @@ impl BiharmonicWeights {
     /// # Errors
     /// [`WeightError::NoSuchPose`], or [`WeightError::NoPose`] for the last one.
     pub fn remove_pose(&mut self, pose: usize) -> Result<Edit, WeightError> {
-        self.check_pose(pose)?;
+        check_pose(pose, self.places.len())?;
         let mut places = self.places.clone();
         places.remove(pose);
         let mut options = self.options.clone();
@@ -347,17 +347,6 @@ impl BiharmonicWeights {
         }
         *self = Self::new(&edited.places, &edited.options)?;
         Ok(Edit::Rebuilt)
-    }
-
-    fn check_pose(&self, pose: usize) -> Result<(), WeightError> {
-        if pose < self.places.len() {
-            Ok(())
-        } else {
-            Err(WeightError::NoSuchPose {
-                pose,
-                count: self.places.len(),
-            })
-        }
     }
 
     /// The poses' places, #poses x 2.

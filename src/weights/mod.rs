@@ -217,3 +217,12 @@ fn check_place(at: &[f64], dimension: usize) -> Result<(), WeightError> {
         Err(WeightError::NotFinite { at: at.to_vec() })
     }
 }
+
+/// Refuses a pose that is not there.
+fn check_pose(pose: usize, count: usize) -> Result<(), WeightError> {
+    if pose < count {
+        Ok(())
+    } else {
+        Err(WeightError::NoSuchPose { pose, count })
+    }
+}

@@ -28,7 +28,7 @@
 mod fit;
 
 use super::layout::Layout;
-use super::{WeightError, WeightProvider, check_place, check_places};
+use super::{WeightError, WeightProvider, check_place, check_places, check_pose};
 use crate::math::vectorised;
 use crate::solve::DenseMatrix;
 use fit::Fitted;
@@ -103,7 +103,7 @@ impl RbfWeights {
     /// # Errors
     /// As [`Self::new`], and [`WeightError::NoSuchPose`].
     pub fn move_pose(&mut self, pose: usize, place: &[f64]) -> Result<(), WeightError> {
-        self.check_pose(pose)?;
+        check_pose(pose, self.places.len())?;
         self.edit(|places| places[pose] = place.to_vec())
     }
 
@@ -120,7 +120,7 @@ impl RbfWeights {
     /// # Errors
     /// As [`Self::new`], and [`WeightError::NoSuchPose`].
     pub fn remove_pose(&mut self, pose: usize) -> Result<(), WeightError> {
-        self.check_pose(pose)?;
+        check_pose(pose, self.places.len())?;
         self.edit(|places| drop(places.remove(pose)))
     }
 
@@ -155,17 +155,6 @@ impl RbfWeights {
         self.fitted = fitted(&places, &self.options)?;
         self.places = places;
         Ok(())
-    }
-
-    fn check_pose(&self, pose: usize) -> Result<(), WeightError> {
-        if pose < self.places.len() {
-            Ok(())
-        } else {
-            Err(WeightError::NoSuchPose {
-                pose,
-                count: self.places.len(),
-            })
-        }
     }
 }
 

@@ -19,6 +19,16 @@ fn tip(poses: &PoseSet) -> ShapePoint {
     ShapePoint::new(poses, &tips).expect("a point")
 }
 
+fn reach_with_defaults(
+    weights: &dyn WeightProvider,
+    blend: &RigidBlend,
+    places: &[Vec<f64>],
+    points: &[ShapePoint],
+    targets: &[Point],
+) -> Result<Reach, PipelineError> {
+    reach(weights, blend, places, points, targets, &ReachOptions::default())
+}
+
 #[test]
 fn what_a_known_place_shows_is_reached_in_a_plane() {
     let poses = hands(&[0.0, 80.0, 160.0]);
@@ -32,25 +42,11 @@ fn what_a_known_place_shows_is_reached_in_a_plane() {
             .blend(&at_place, &mut blend.scratch(), &mut positions)
             .expect("a blend");
         let target = tip(&poses).at(&positions, &at_place);
-        let found = reach(
-            &weights,
-            &blend,
-            &places,
-            &[tip(&poses)],
-            &[target],
-            &ReachOptions::default(),
-        );
+        let found = reach_with_defaults(&weights, &blend, &places, &[tip(&poses)], &[target]);
         let found = found.expect("a place");
         assert!(found.error < 1e-6, "{known:?}: {found:?}");
         assert!((found.reached[0] - target).norm() < 1e-6);
-        let again = reach(
-            &weights,
-            &blend,
-            &places,
-            &[tip(&poses)],
-            &[target],
-            &ReachOptions::default(),
-        );
+        let again = reach_with_defaults(&weights, &blend, &places, &[tip(&poses)], &[target]);
         assert_eq!(again.expect("a place"), found);
         assert!(found.evaluations < 5000, "{}", found.evaluations);
     }
@@ -67,14 +63,7 @@ fn out_of_reach_the_nearest_is_found_in_a_line_and_in_space() {
     ] {
         let weights = RbfWeights::new(&places, &RbfOptions::default()).expect("weights");
         let target = Point::new(10.0, 10.0);
-        let found = reach(
-            &weights,
-            &blend,
-            &places,
-            &[tip(&poses)],
-            &[target],
-            &ReachOptions::default(),
-        );
+        let found = reach_with_defaults(&weights, &blend, &places, &[tip(&poses)], &[target]);
         let found = found.expect("a place");
         // It turns about its middle, which stays on the diagonal: so does the tip.
         assert!((found.reached[0].x - found.reached[0].y).abs() < 1e-2, "{found:?}");
@@ -92,32 +81,15 @@ fn several_points_share_the_error_and_one_pose_stays_where_it_is() {
     // The tip is wanted as in the first pose, and as much as in the second.
     let targets = [Point::new(4.0, 0.0), Point::new(0.0, 4.0)];
     let points = [tip(&poses), tip(&poses)];
-    let found = reach(&weights, &blend, &places, &points, &targets, &ReachOptions::default()).expect("a place");
+    let found = reach_with_defaults(&weights, &blend, &places, &points, &targets).expect("a place");
     assert!((found.weights[0] - 0.5).abs() < 1e-3, "{found:?}");
-    assert!(
-        reach(
-            &weights,
-            &blend,
-            &places,
-            &points,
-            &targets[..1],
-            &ReachOptions::default()
-        )
-        .is_err()
-    );
+    assert!(reach_with_defaults(&weights, &blend, &places, &points, &targets[..1]).is_err());
 
     let one = hands(&[0.0]);
     let blend = RigidBlend::new(&one, &BlendOptions::default()).expect("a blend");
     let places = vec![vec![2.0, 3.0]];
     let weights = BiharmonicWeights::new(&places, &BiharmonicOptions::default()).expect("weights");
-    let found = reach(
-        &weights,
-        &blend,
-        &places,
-        &[tip(&one)],
-        &[Point::new(4.0, 1.0)],
-        &ReachOptions::default(),
-    );
+    let found = reach_with_defaults(&weights, &blend, &places, &[tip(&one)], &[Point::new(4.0, 1.0)]);
     let found = found.expect("a place");
     assert_eq!((found.at, found.evaluations), (vec![2.0, 3.0], 3));
     assert!((found.error - 1.0).abs() < 1e-12);

@@ -17,8 +17,8 @@
 use super::HandleError;
 use super::constraint::Constraint;
 use super::rest::RestShape;
-use crate::math::{Matrix, Point, PolarSplit, point};
-use crate::mesh::geometry;
+use crate::math::{Matrix, Point, PolarSplit};
+use crate::mesh::first_flat;
 use crate::solve::{DenseMatrix, SolvedDense, SparseCholesky, Triplets};
 
 /// The most Newton steps from one beginning.
@@ -101,7 +101,7 @@ fn minimise(
         price = price.max(2.0 * multipliers.iter().map(|m| m.norm()).fold(0.0, f64::max));
         let merit = |positions: &[Point]| energy(shape, positions) + price * violation(positions);
         let before = merit(positions);
-        let mut share = (SHORT_OF_FLAT * first_flat(shape, positions, &direction)).min(1.0);
+        let mut share = (SHORT_OF_FLAT * first_flat(shape.triangles().iter().copied(), positions, &direction)).min(1.0);
         let mut halvings = 0;
         let moved = loop {
             let moved: Vec<Point> = positions.iter().zip(&direction).map(|(p, d)| p + d * share).collect();
@@ -272,49 +272,12 @@ impl Modes {
     }
 }
 
-/// The share of the step at which the first triangle becomes flat; infinite if none does.
-fn first_flat(shape: &RestShape, positions: &[Point], direction: &[Point]) -> f64 {
-    shape
-        .triangles()
-        .iter()
-        .map(|&triangle| {
-            let ([a, b, c], [u, v, w]) = (
-                geometry::corners(positions, triangle),
-                geometry::corners(direction, triangle),
-            );
-            let (edges, motions) = ((b - a, c - a), (v - u, w - u));
-            // The doubled area is a quadratic of the share.
-            let constant = point::cross(edges.0, edges.1);
-            let linear = point::cross(motions.0, edges.1) + point::cross(edges.0, motions.1);
-            let square = point::cross(motions.0, motions.1);
-            smallest_positive_root(square, linear, constant)
-        })
-        .fold(f64::INFINITY, f64::min)
-}
-
-/// Of `square t^2 + linear t + constant` with a positive constant.
-fn smallest_positive_root(square: f64, linear: f64, constant: f64) -> f64 {
-    let discriminant = linear * linear - 4.0 * square * constant;
-    if discriminant < 0.0 {
-        return f64::INFINITY;
-    }
-    // Without cancellation: both roots from the larger sum.
-    let sum = -0.5 * (linear + linear.signum() * discriminant.sqrt());
-    [sum / square, constant / sum]
-        .into_iter()
-        .filter(|root| *root > 0.0)
-        .fold(f64::INFINITY, f64::min)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn roots_and_slopes_are_right() {
-        assert_eq!(smallest_positive_root(1.0, -3.0, 2.0), 1.0);
-        assert_eq!(smallest_positive_root(0.0, -2.0, 1.0), 0.5);
-        assert_eq!(smallest_positive_root(1.0, 0.0, 1.0), f64::INFINITY);
+    fn slopes_are_right() {
         // The slope against differences.
         let map = Matrix::new(1.6, 0.4, -0.2, 1.2);
         let value = |m: &Matrix| m.norm_squared() * (1.0 + 1.0 / m.determinant().powi(2));
