@@ -9,9 +9,11 @@
 mod camera;
 pub mod coverage;
 pub mod diagram;
+pub mod drawing;
 mod frame;
 mod nearest_seed;
 mod painter;
+pub mod puppet;
 pub mod raster;
 mod silhouette;
 mod texture;

@@ -1,0 +1,87 @@
+//! The character as textured meshes: what formats of deformed meshes write, and what an engine draws.
+//!
+//! A [`Puppet`] does not change over an animation; a [`PuppetFrame`] is what does. Meshes enclose the drawings, so what is seen is
+//! decided by the textures' alpha, not by the mesh's edge.
+
+use crate::math::Point;
+
+/// A character as textured meshes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Puppet {
+    /// Columns and rows of the frames that positions are given in.
+    pub size: [usize; 2],
+    /// In the order of the scene.
+    pub layers: Vec<PuppetLayer>,
+}
+
+/// One layer: a mesh and its textures.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PuppetLayer {
+    /// Its name.
+    pub name: String,
+    /// Three vertices each; positive (x right, y down) in every pose.
+    pub triangles: Vec<[usize; 3]>,
+    /// Outer boundary first, then holes, as vertices.
+    pub rings: Vec<Vec<usize>>,
+    /// The poses that have this layer.
+    pub poses: Vec<PuppetPose>,
+    /// The drawings' pictures.
+    pub textures: Vec<PuppetTexture>,
+}
+
+/// A pose of a layer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PuppetPose {
+    /// Its name.
+    pub name: String,
+    /// #vertices positions, in pixels of the frame.
+    pub positions: Vec<Point>,
+    /// Which texture it shows.
+    pub texture: usize,
+}
+
+/// A picture and where the mesh's vertices lie on it.
+#[derive(Clone, PartialEq)]
+pub struct PuppetTexture {
+    /// The name of the pose that it was drawn for.
+    pub name: String,
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Row by row: red, green, blue, alpha, not premultiplied. Clear pixels have the colour of the drawing next to them, so
+    /// that a reader that interpolates shows no fringe.
+    pub pixels: Vec<[u8; 4]>,
+    /// #vertices places, in pixels of the picture from its upper left corner.
+    pub places: Vec<Point>,
+}
+
+impl std::fmt::Debug for PuppetTexture {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PuppetTexture")
+            .field("name", &self.name)
+            .field("width", &self.width)
+            .field("height", &self.height)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What changes from frame to frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PuppetFrame {
+    /// One a layer of the puppet, in its order.
+    pub layers: Vec<PuppetLayerFrame>,
+    /// The layers from back to front.
+    pub order: Vec<usize>,
+}
+
+/// One layer in one frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PuppetLayerFrame {
+    /// #vertices positions, in pixels of the frame.
+    pub positions: Vec<Point>,
+    /// How much of each texture is seen; they sum to 1.
+    pub textures: Vec<f64>,
+    /// Of the layer, in [0, 1].
+    pub opacity: f64,
+}
