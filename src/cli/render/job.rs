@@ -1,0 +1,69 @@
+//! What is to be rendered, as every kind of output needs it.
+
+use std::path::Path;
+
+use anyhow::Context as _;
+use inbetween::export::Repetition;
+use inbetween::pipeline::Character;
+use inbetween::scene::{Animation, Scene};
+
+use crate::cli::Verbosity;
+use crate::cli::frames;
+use crate::cli::progress::Progress;
+
+/// A scene, the frames that are wanted of it, and where they go.
+pub(super) struct Job<'a> {
+    /// Where the output goes.
+    pub(super) output: &'a Path,
+    /// The scene, laid out, with what the command line says in place of the file.
+    pub(super) scene: &'a Scene,
+    /// The frames that are wanted, from 1, in order.
+    pub(super) numbers: Vec<usize>,
+    /// Whether frames that are there already are left out.
+    pub(super) resume: bool,
+    /// What is told.
+    pub(super) verbosity: Verbosity,
+}
+
+impl Job<'_> {
+    /// What is played.
+    pub(super) fn animation(&self) -> &Animation {
+        &self.scene.animation
+    }
+
+    /// Columns and rows.
+    pub(super) fn size(&self) -> [usize; 2] {
+        self.animation().size.map(|side| side as usize)
+    }
+
+    /// Whether it is played once.
+    pub(super) fn repetition(&self) -> Repetition {
+        if self.animation().is_loop() {
+            Repetition::Forever
+        } else {
+            Repetition::Once
+        }
+    }
+
+    /// The scene's character; its notes are told.
+    pub(super) fn character(&self) -> anyhow::Result<Character> {
+        let file = || self.scene.file.display().to_string();
+        let character = Character::new(self.scene, self.size()).with_context(file)?;
+        for note in character.notes() {
+            self.verbosity.note(&format!("note: {note}"));
+        }
+        Ok(character)
+    }
+
+    /// Progress over the frames that are wanted.
+    pub(super) fn progress(&self) -> Progress {
+        Progress::new(self.numbers.len(), self.verbosity)
+    }
+
+    /// Ends the progress, and tells what there is to tell about the frames.
+    pub(super) fn done(&self, character: &Character, progress: &Progress) -> anyhow::Result<()> {
+        progress.finish();
+        frames::tell_inverted(character, self.animation(), &self.numbers, self.verbosity)?;
+        Ok(())
+    }
+}

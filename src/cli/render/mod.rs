@@ -1,0 +1,120 @@
+//! `inbetween render`: its arguments, and which file writes which kind of output.
+
+mod apng;
+mod format;
+mod gif;
+mod job;
+mod sequence;
+
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use inbetween::pipeline::laid_out;
+use inbetween::scene::Scene;
+
+use self::format::Format;
+use self::job::Job;
+use super::values::{FrameNumbers, Grid, frame_rate, thread_count};
+use super::{Failure, Verbosity};
+
+/// Render the animation of a scene
+///
+/// The kind of output is taken from OUT's name: a folder gets numbered PNG files NAME.0001.png, a name ending in .gif
+/// or .apng that one file. Any subset of frames has the same bytes as in a whole run, for any number of threads.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  inbetween render walker/scene.toml -o walker.gif
+  inbetween render walker/scene.toml -o frames --size 1920x1080 --fps 30
+  inbetween render walker/scene.toml -o frames --frames 101-200 --threads 8 --resume   one share of a render farm")]
+pub(crate) struct Arguments {
+    /// The scene file
+    scene: PathBuf,
+    /// A folder, or a file ending in .gif or .apng
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// The kind of output, where the name does not say: png (a folder), gif or apng
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<String>,
+    /// Only these frames, counted from 1, such as 1-10,20
+    #[arg(long, value_name = "LIST")]
+    frames: Option<FrameNumbers>,
+    /// Columns and rows, such as 1920x1080; the scene's otherwise
+    #[arg(long, value_name = "WxH")]
+    size: Option<Grid>,
+    /// Frames a second; the scene's otherwise
+    #[arg(long, value_parser = frame_rate)]
+    fps: Option<f64>,
+    /// How many threads; as many as there are cores otherwise
+    #[arg(long, value_name = "N", value_parser = thread_count)]
+    threads: Option<usize>,
+    /// Leave out frames whose file is already there (folders only)
+    #[arg(long)]
+    resume: bool,
+}
+
+/// Writes one kind of output.
+type Writer = fn(Job<'_>) -> anyhow::Result<()>;
+
+/// What writes a kind of output; `None` for those to come.
+fn writer(format: Format) -> Option<Writer> {
+    match format {
+        Format::Png => Some(sequence::run),
+        Format::Gif => Some(gif::run),
+        Format::Apng => Some(apng::run),
+        Format::WebP
+        | Format::Svg
+        | Format::SvgSequence
+        | Format::Lottie
+        | Format::Glb
+        | Format::Spine
+        | Format::Sprites
+        | Format::Runtime
+        | Format::Mp4
+        | Format::WebM => None,
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
+    let format = Format::of(&arguments.output, arguments.format.as_deref()).map_err(Failure::Usage)?;
+    let Some(write) = writer(format) else {
+        return Err(Failure::Usage(format!(
+            "{}: {} is not supported yet; choose a folder (PNG files), .gif or .apng",
+            arguments.output.display(),
+            format.name()
+        )));
+    };
+    if arguments.resume && !format.is_sequence() {
+        return Err(Failure::Usage(
+            "--resume works with a folder of files only; a single file is written whole".to_owned(),
+        ));
+    }
+    let scene = Scene::open(&arguments.scene)?;
+    let file = scene.file.display().to_string();
+    let mut scene = laid_out(scene).context(file)?;
+    if let Some(fps) = arguments.fps {
+        scene.animation.fps = fps;
+    }
+    if let Some(Grid([columns, rows])) = arguments.size {
+        scene.animation.size = [columns as u32, rows as u32];
+    }
+    let count = scene.animation.frame_count();
+    let numbers = match &arguments.frames {
+        Some(frames) => frames.within(count).map_err(Failure::Usage)?,
+        None => (1..=count).collect(),
+    };
+    let mut pool = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = arguments.threads {
+        pool = pool.num_threads(threads);
+    }
+    let pool = pool.build().context("cannot start the threads")?;
+    let job = Job {
+        output: &arguments.output,
+        scene: &scene,
+        numbers,
+        resume: arguments.resume,
+        verbosity,
+    };
+    pool.install(|| write(job))?;
+    Ok(())
+}
