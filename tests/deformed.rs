@@ -148,7 +148,7 @@ fn a_landmark_reaches_what_a_place_shows() {
     let workshop = with_copies(&copy("bent", "tall", "[0, 1]", BENT));
     let scene = scene_of(&workshop);
     let character = Character::new(&scene, [48, 36]).expect("a character");
-    character.mapping().check().expect("valid");
+    character.layers()[0].mapping().check().expect("valid");
     // Where the eye is on the copy.
     let drawings = read_drawings(&scene).expect("drawings");
     let (_, report) = map_drawings(&scene, &drawings).expect("a mapping");

@@ -16,8 +16,10 @@ fn scene_file(name: &str) -> PathBuf {
 fn shown(name: &str) {
     let scene = Scene::open(&scene_file(name)).expect("a scene");
     let character = Character::new(&scene, [192, 216]).expect("a character");
-    character.mapping().check().expect("a valid mapping");
-    assert_eq!(character.mapping().poses.len(), scene.poses.len());
+    for layer in character.layers() {
+        layer.mapping().check().expect("a valid mapping");
+        assert_eq!(layer.mapping().poses.len(), layer.poses().len());
+    }
     for pose in &scene.poses {
         let frame = character.frame_at(&pose.at).expect("a frame");
         // Every scene stands before a colour: the character is what differs from the corner.

@@ -68,17 +68,18 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     for note in character.notes() {
         verbosity.note(&format!("note: {note}"));
     }
-    let (frame, (_, report)) = match (&arguments.at, &arguments.weights) {
-        (_, Some(Numbers(weights))) => (character.frame_of(weights)?, character.shape_of(weights)?),
-        (Some(Numbers(place)), None) => (character.frame_at(place)?, character.shape_at(place)?),
+    let posed = match (&arguments.at, &arguments.weights) {
+        (_, Some(Numbers(weights))) => character.posed_of(weights)?,
+        (Some(Numbers(place)), None) => character.posed_at(place)?,
         (None, None) => return Err(Failure::Usage("give --at or --weights".to_owned())),
     };
-    if report.flipped > 0 {
+    if posed.flipped() > 0 {
         verbosity.note(&format!(
             "note: {} triangles are inverted in this frame; `guard = \"repair\"` under [blend] repairs it",
-            report.flipped
+            posed.flipped()
         ));
     }
-    let bytes = png_bytes(&frame).map_err(|reason| anyhow::anyhow!("{}: {reason}", arguments.output.display()))?;
+    let bytes = png_bytes(&character.paint(&posed))
+        .map_err(|reason| anyhow::anyhow!("{}: {reason}", arguments.output.display()))?;
     Ok(output.write(&bytes)?)
 }

@@ -49,9 +49,9 @@ pub(crate) fn tell_inverted(
 ) -> Result<(), PipelineError> {
     let mut inverted = Vec::new();
     for &number in numbers {
-        let (_, report) = character.shape_at(&animation.at(animation.time_of_frame(number - 1)))?;
-        if report.flipped > 0 {
-            inverted.push((number, report.flipped));
+        let flipped = character.posed(animation, number - 1)?.flipped();
+        if flipped > 0 {
+            inverted.push((number, flipped));
         }
     }
     if let Some((number, count)) = inverted

@@ -6,6 +6,7 @@ use anyhow::Context as _;
 use inbetween::pipeline::{map_drawings_observed, read_drawings};
 use inbetween::scene::Scene;
 
+use super::layer;
 use super::output::Output;
 use super::stage_table::{self, StageClock};
 use super::{Failure, Verbosity};
@@ -35,13 +36,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
     let scene = Scene::open(&arguments.scene)?;
-    if let Some(layer) = &arguments.layer {
-        return Err(anyhow::anyhow!(
-            "{}: there is no layer '{layer}'; leave out --layer",
-            scene.file.display()
-        )
-        .into());
-    }
+    let scene = layer::chosen(scene, arguments.layer.as_deref())?;
     let output = Output::open(&arguments.output)?;
     let in_scene = || scene.file.display().to_string();
     let mut clock = StageClock::start();

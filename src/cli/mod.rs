@@ -7,6 +7,7 @@ mod blend;
 mod check;
 mod frame;
 mod frames;
+mod layer;
 mod map;
 mod new;
 mod output;

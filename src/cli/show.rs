@@ -8,6 +8,7 @@ use inbetween::pipeline::{laid_out, map_drawings, read_drawings, weight_provider
 use inbetween::render::diagram::{self, Diagram, DiagramPose, Sections};
 use inbetween::scene::Scene;
 
+use super::layer;
 use super::output::Output;
 use super::{Failure, Verbosity};
 
@@ -24,10 +25,13 @@ pub(crate) struct Arguments {
     /// The picture, a .png file, or - for standard output
     #[arg(short, long, value_name = "OUT.png")]
     output: PathBuf,
+    /// The layer, in a scene with layers
+    #[arg(long, value_name = "NAME")]
+    layer: Option<String>,
 }
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
-    let scene = Scene::open(&arguments.scene)?;
+    let scene = layer::chosen(Scene::open(&arguments.scene)?, arguments.layer.as_deref())?;
     let output = Output::open(&arguments.output)?;
     let file = scene.file.display().to_string();
     let scene = laid_out(scene).context(file)?;

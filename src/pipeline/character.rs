@@ -1,13 +1,16 @@
 //! A character ready to be shown in any pose.
 
-use super::drawings::{read_drawings, sharpen};
+use rayon::prelude::*;
+
+use super::drawings::sharpen;
+use super::layer::{self, LayerShape, Part, PosedLayer};
 use super::layout::placed;
-use super::{PipelineError, map_drawings, weight_provider, weighting};
-use crate::blend::{self, BlendOptions, BlendReport, RigidBlend};
+use super::{PipelineError, weight_provider, weighting};
+use crate::blend::{self, BlendOptions};
 use crate::input::Drawing;
 use crate::math::Point;
 use crate::pose::Mapping;
-use crate::render::{Camera, Frame, Painter, PoseTexture, Silhouette, Texture};
+use crate::render::{Camera, Frame, Painter, PoseTexture, Texture};
 use crate::scene::{Anchor, Animation, Background, Layout, Scene};
 use crate::texture::texture_weights;
 use crate::weights::WeightProvider;
@@ -15,16 +18,43 @@ use crate::weights::WeightProvider;
 /// How many places of the animation the camera looks at before it chooses its distance.
 const CAMERA_PLACES: usize = 48;
 
-/// A scene's character with everything that is computed once: mapping, factorised blend, weights, textures, camera.
+/// A scene's character with everything that is computed once: mappings, factorised blends, weights, textures, camera.
 #[derive(Debug)]
 pub struct Character {
-    mapping: Mapping,
-    notes: Vec<String>,
-    blend: RigidBlend,
+    names: Vec<String>,
+    figure: Figure,
     weights: Box<dyn WeightProvider>,
-    texture_sharpness: f64,
+    /// What each layer is drawn with.
+    art: Vec<Painter>,
+    camera: Camera,
+    notes: Vec<String>,
     background: Background,
-    painter: Painter,
+}
+
+/// The shapes of all layers.
+#[derive(Debug)]
+struct Figure {
+    layers: Vec<LayerShape>,
+    /// Per pose of the scene, the layers from back to front.
+    draw_orders: Vec<Vec<usize>>,
+    texture_sharpness: f64,
+}
+
+/// A character in one pose: the shapes of a frame, before it is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Posed {
+    /// One a layer of the scene; a scene without layers has one.
+    pub layers: Vec<PosedLayer>,
+    /// The layers from back to front.
+    pub order: Vec<usize>,
+}
+
+impl Posed {
+    /// Inverted triangles, over all layers.
+    #[must_use]
+    pub fn flipped(&self) -> usize {
+        self.layers.iter().map(|layer| layer.report.flipped).sum()
+    }
 }
 
 impl Character {
@@ -41,41 +71,51 @@ impl Character {
             Layout::Given => Some(weight_provider(scene, None)?),
             Layout::Automatic => None,
         };
-        let mut drawings = read_drawings(scene)?;
-        let (mapping, report) = map_drawings(scene, &drawings)?;
-        let scene = &placed(scene, &mapping);
+        let parts = layer::parts(scene);
+        let mapped: Vec<Result<_, PipelineError>> = parts.par_iter().map(Part::mapped).collect();
+        let mut drawings = Vec::new();
+        let mut shapes = Vec::new();
+        let mut notes = Vec::new();
+        for (part, mapped) in parts.iter().zip(mapped) {
+            let (drawn, mapping, report) = mapped?;
+            notes.extend(report.notes);
+            shapes.push(part.shape(mapping, &mut notes)?);
+            drawings.push(drawn);
+        }
+        layer::tie(&parts, &mut shapes)?;
+        let scene = &placed(scene, shapes.iter().map(|shape| (shape.poses(), shape.mapping())))?;
         let weights = match weights.take() {
             Some(weights) => weights,
             None => weight_provider(scene, None)?,
         };
-        let mut notes = report.notes;
-        let blend = RigidBlend::new(&mapping.poses, &blend_options(scene, &mapping))?;
-        if blend.turns_are_ambiguous() {
-            notes.push(
-                "some poses are turned by half a turn against one another, so either way round is as good; \
-                 set `turns` on a pose to choose"
-                    .to_owned(),
-            );
-        }
-        let silhouette = Silhouette::new(&mapping);
-        let camera = camera(scene, size, &mapping, &blend, weights.as_ref(), &silhouette)?;
-        sharpen(scene, &mut drawings, camera.scale())?;
-        let (textures, texture_of) = textures(scene, &drawings, camera.scale());
-        Ok(Self {
-            painter: Painter::new(&mapping, textures, texture_of, silhouette, camera),
-            mapping,
-            notes,
-            blend,
-            weights,
+        let figure = Figure {
+            draw_orders: draw_orders(scene, shapes.len()),
+            layers: shapes,
             texture_sharpness: scene.texture_sharpness,
+        };
+        let camera = camera(&scene.animation, size, &figure, weights.as_ref())?;
+        let mut art = Vec::new();
+        for ((part, shape), drawings) in parts.iter().zip(&figure.layers).zip(&mut drawings) {
+            sharpen(part.scene, drawings, camera.scale())?;
+            let (textures, texture_of) = textures(part.scene, drawings, camera.scale());
+            let silhouette = shape.silhouette.clone();
+            art.push(Painter::new(shape.mapping(), textures, texture_of, silhouette, camera));
+        }
+        Ok(Self {
+            names: scene.names(),
+            figure,
+            weights,
+            art,
+            camera,
+            notes,
             background: scene.animation.background,
         })
     }
 
-    /// The mapping.
+    /// Its layers, in the scene's order; a scene without layers has one.
     #[must_use]
-    pub fn mapping(&self) -> &Mapping {
-        &self.mapping
+    pub fn layers(&self) -> &[LayerShape] {
+        &self.figure.layers
     }
 
     /// What the artist should know, one line a remark.
@@ -84,16 +124,63 @@ impl Character {
         &self.notes
     }
 
+    /// The camera.
+    #[must_use]
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The character at a place of the pose space.
+    ///
+    /// # Errors
+    /// [`PipelineError`] if the place has the wrong dimension or is not finite.
+    pub fn posed_at(&self, place: &[f64]) -> Result<Posed, PipelineError> {
+        let mut weights = Vec::new();
+        self.weights
+            .weights(place, &mut weights)
+            .map_err(PipelineError::Weights)?;
+        self.posed_of(&weights)
+    }
+
+    /// The character for given weights, one a pose of the scene.
+    ///
+    /// # Errors
+    /// [`PipelineError`] if they do not fit or do not sum to 1.
+    pub fn posed_of(&self, weights: &[f64]) -> Result<Posed, PipelineError> {
+        self.figure.posed(&weighting::checked_weights(weights, &self.names)?)
+    }
+
+    /// Paints a frame.
+    #[must_use]
+    pub fn paint(&self, posed: &Posed) -> Frame {
+        let [columns, rows] = self.camera.size();
+        let mut frame: Option<Frame> = None;
+        for &k in &posed.order {
+            let layer = &posed.layers[k];
+            if layer.opacity <= 0.0 {
+                continue;
+            }
+            let own = self.art[k].paint(&layer.positions, &layer.weights, &layer.texture_weights);
+            match &mut frame {
+                None if layer.opacity == 1.0 => frame = Some(own),
+                before => before
+                    .get_or_insert_with(|| Frame::filled(columns, rows, [0; 4]))
+                    .put_over(&own, layer.opacity),
+            }
+        }
+        let mut frame = frame.unwrap_or_else(|| Frame::filled(columns, rows, [0; 4]));
+        if let Background::Colour(colour) = self.background {
+            frame.put_before(colour);
+        }
+        frame
+    }
+
     /// The frame at a place of the pose space.
     ///
     /// # Errors
     /// [`PipelineError`] if the place has the wrong dimension or is not finite.
     pub fn frame_at(&self, place: &[f64]) -> Result<Frame, PipelineError> {
-        let mut weights = Vec::new();
-        self.weights
-            .weights(place, &mut weights)
-            .map_err(PipelineError::Weights)?;
-        self.frame_of(&weights)
+        Ok(self.paint(&self.posed_at(place)?))
     }
 
     /// The frame for given weights, one a pose.
@@ -101,36 +188,7 @@ impl Character {
     /// # Errors
     /// [`PipelineError`] if they do not fit or do not sum to 1.
     pub fn frame_of(&self, weights: &[f64]) -> Result<Frame, PipelineError> {
-        let weights = weighting::checked_weights(weights, self.mapping.poses.names())?;
-        let (positions, _) = self.shape_of(&weights)?;
-        let shown = texture_weights(&weights, self.texture_sharpness)?;
-        let mut frame = self.painter.paint(&positions, &weights, &shown);
-        if let Background::Colour(colour) = self.background {
-            frame.put_before(colour);
-        }
-        Ok(frame)
-    }
-
-    /// The vertices of the frame for given weights, and what there is to say about it: the blend without the picture.
-    ///
-    /// # Errors
-    /// As [`Self::frame_of`].
-    pub fn shape_of(&self, weights: &[f64]) -> Result<(Vec<Point>, BlendReport), PipelineError> {
-        let mut positions = Vec::new();
-        let report = self.blend.blend(weights, &mut self.blend.scratch(), &mut positions)?;
-        Ok((positions, report))
-    }
-
-    /// The vertices of the frame at a place of the pose space.
-    ///
-    /// # Errors
-    /// As [`Self::frame_at`].
-    pub fn shape_at(&self, place: &[f64]) -> Result<(Vec<Point>, BlendReport), PipelineError> {
-        let mut weights = Vec::new();
-        self.weights
-            .weights(place, &mut weights)
-            .map_err(PipelineError::Weights)?;
-        self.shape_of(&weights)
+        Ok(self.paint(&self.posed_of(weights)?))
     }
 
     /// Frame `index` of an animation, counted from 0.
@@ -138,8 +196,56 @@ impl Character {
     /// # Errors
     /// As [`Self::frame_at`].
     pub fn frame(&self, animation: &Animation, index: usize) -> Result<Frame, PipelineError> {
-        self.frame_at(&animation.at(animation.time_of_frame(index)))
+        Ok(self.paint(&self.posed(animation, index)?))
     }
+
+    /// The character in frame `index` of an animation, counted from 0.
+    ///
+    /// # Errors
+    /// As [`Self::posed_at`].
+    pub fn posed(&self, animation: &Animation, index: usize) -> Result<Posed, PipelineError> {
+        self.posed_at(&animation.at(animation.time_of_frame(index)))
+    }
+}
+
+impl Figure {
+    /// The shapes for weights that sum to 1.
+    fn posed(&self, weights: &[f64]) -> Result<Posed, PipelineError> {
+        let shown = texture_weights(weights, self.texture_sharpness)?;
+        let mut layers: Vec<PosedLayer> = (self.layers.iter())
+            .map(|shape| shape.posed(weights, &shown, self.texture_sharpness))
+            .collect::<Result<_, _>>()?;
+        // What a layer hangs on is put in its place first; a validated scene has no circle.
+        let mut is_placed: Vec<bool> = self.layers.iter().map(|shape| shape.hangs_on().is_none()).collect();
+        for _ in 0..self.layers.len() {
+            for (k, shape) in self.layers.iter().enumerate() {
+                let Some(to) = shape.hangs_on().filter(|&to| !is_placed[k] && is_placed[to]) else {
+                    continue;
+                };
+                let gap = shape.gap(&layers[k], &layers[to]);
+                for position in &mut layers[k].positions {
+                    *position += gap;
+                }
+                is_placed[k] = true;
+            }
+        }
+        Ok(Posed {
+            layers,
+            order: self.draw_orders[strongest(&shown)].clone(),
+        })
+    }
+}
+
+/// The pose whose drawing is seen most; of equal ones the first.
+fn strongest(shown: &[f64]) -> usize {
+    (0..shown.len()).fold(0, |best, pose| if shown[pose] > shown[best] { pose } else { best })
+}
+
+fn draw_orders(scene: &Scene, layer_count: usize) -> Vec<Vec<usize>> {
+    if scene.layers.is_empty() {
+        return vec![(0..layer_count).collect(); scene.poses.len()];
+    }
+    scene.poses.iter().map(|pose| pose.draw_order.clone()).collect()
 }
 
 pub(super) fn blend_options(scene: &Scene, mapping: &Mapping) -> BlendOptions {
@@ -190,28 +296,33 @@ fn nearest_vertex(scene: &Scene, mapping: &Mapping, landmark: usize) -> usize {
 }
 
 fn camera(
-    scene: &Scene,
+    animation: &Animation,
     size: [usize; 2],
-    mapping: &Mapping,
-    blend: &RigidBlend,
+    figure: &Figure,
     weights: &dyn WeightProvider,
-    silhouette: &Silhouette,
 ) -> Result<Camera, PipelineError> {
-    let mut shown: Vec<Point> = mapping
-        .outlines
-        .iter()
+    let mut shown: Vec<Point> = (figure.layers.iter())
+        .flat_map(|layer| &layer.mapping().outlines)
         .flat_map(|outline| outline.outer().points().iter().copied())
         .collect();
-    let animation = &scene.animation;
     let (start, count) = (animation.time_of_frame(0), CAMERA_PLACES);
-    let (mut at_place, mut positions, mut scratch) = (Vec::new(), Vec::new(), blend.scratch());
+    let mut at_place = Vec::new();
     for k in 0..count {
         let time = start + animation.duration() * k as f64 / count as f64;
         weights
             .weights(&animation.at(time), &mut at_place)
             .map_err(PipelineError::Weights)?;
-        blend.blend(&at_place, &mut scratch, &mut positions)?;
-        shown.extend(silhouette.at(&positions, &at_place).into_iter().flatten());
+        for (shape, posed) in figure.layers.iter().zip(figure.posed(&at_place)?.layers) {
+            if posed.opacity > 0.0 {
+                shown.extend(
+                    shape
+                        .silhouette
+                        .at(&posed.positions, &posed.weights)
+                        .into_iter()
+                        .flatten(),
+                );
+            }
+        }
     }
     Ok(Camera::fitting(&shown, size))
 }

@@ -148,7 +148,12 @@ fn deformed(
             .map(|handle| as_used(scene, drawings, drawing, end(handle)))
             .collect()
     };
-    let (from, to) = (ends(|handle| handle.from), ends(|handle| handle.to));
+    let (mut from, mut to) = (ends(|handle| handle.from), ends(|handle| handle.to));
+    if from.is_empty() {
+        // A layer that stays as it is while others move.
+        from.extend(base.positions.first());
+        to.clone_from(&from);
+    }
     let topology = drawn.poses.topology();
     let mut positions = Vec::new();
     let drag = HandleDeformation::new(topology, &base.positions, &from)

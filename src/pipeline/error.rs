@@ -16,6 +16,20 @@ pub enum PipelineError {
     /// The scene file is wrong.
     #[error(transparent)]
     Scene(Box<SceneError>),
+    /// A layer cannot be used.
+    #[error("layer '{layer}': {source}")]
+    Layer {
+        /// Its name.
+        layer: String,
+        /// What is wrong.
+        source: Box<PipelineError>,
+    },
+    /// A scene with layers was given where one layer is meant.
+    #[error("the scene has layers; this works on one of them, {}", layers.join(" or "))]
+    Layered {
+        /// Their names.
+        layers: Vec<String>,
+    },
     /// A drawing cannot be used.
     #[error("pose '{pose}' ({}): {source}", file.display())]
     Drawing {

@@ -1,6 +1,6 @@
 //! Automatic layout: drawings that are alike lie near one another in the pose space.
 
-use super::{PipelineError, map_drawings, read_drawings};
+use super::{PipelineError, layer};
 use crate::pose::{Mapping, deformation_distances};
 use crate::scene::{Layout, Scene};
 use crate::weights::arrange;
@@ -13,16 +13,30 @@ pub fn automatic_places(mapping: &Mapping) -> Vec<Vec<f64>> {
     places.into_iter().map(Vec::from).collect()
 }
 
-/// The scene with a place for every pose: its own, or those of its mapping.
-pub(super) fn placed(scene: &Scene, mapping: &Mapping) -> Scene {
-    match scene.layout {
-        Layout::Given => scene.clone(),
-        Layout::Automatic => scene.laid_out(&automatic_places(mapping)),
+/// The scene with a place for every pose: its own, or those of the first of its layers that all poses have. A layer is given by
+/// its poses and its mapping.
+pub(super) fn placed<'a>(
+    scene: &Scene,
+    layers: impl IntoIterator<Item = (&'a [usize], &'a Mapping)>,
+) -> Result<Scene, PipelineError> {
+    if scene.layout == Layout::Given {
+        return Ok(scene.clone());
     }
+    let mut whole = layers.into_iter().filter(|(poses, _)| poses.len() == scene.poses.len());
+    let (_, mapping) = whole.next().ok_or_else(no_common_layer)?;
+    Ok(scene.laid_out(&automatic_places(mapping)))
+}
+
+fn no_common_layer() -> PipelineError {
+    PipelineError::stage(
+        &[],
+        None,
+        "pose space: no layer is in all poses, so the poses cannot be compared; give every pose its place, `at`",
+    )
 }
 
 /// The scene with a place for every pose. If the file gives none, its drawings are read and mapped for that, which takes as long
-/// as [`map_drawings`].
+/// as [`map_drawings`]; of a scene with layers, those of its first layer that all poses have.
 ///
 /// # Errors
 /// [`PipelineError`] if the drawings have to be mapped and cannot be.
@@ -30,7 +44,10 @@ pub fn laid_out(scene: Scene) -> Result<Scene, PipelineError> {
     if scene.layout == Layout::Given {
         return Ok(scene);
     }
-    let drawings = read_drawings(&scene)?;
-    let (mapping, _) = map_drawings(&scene, &drawings)?;
-    Ok(placed(&scene, &mapping))
+    let whole = layer::parts(&scene)
+        .into_iter()
+        .find(|part| part.poses.len() == scene.poses.len())
+        .ok_or_else(no_common_layer)?;
+    let (_, mapping, _) = whole.mapped()?;
+    placed(&scene, [(whole.poses.as_slice(), &mapping)])
 }

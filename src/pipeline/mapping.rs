@@ -26,7 +26,8 @@ const VARIED_ANGLES: f64 = 0.97;
 /// [`read_drawings`](super::read_drawings) gives them. Deformed copies are added afterwards.
 ///
 /// # Errors
-/// [`PipelineError`] if holes or landmarks do not fit, or a stage refuses.
+/// [`PipelineError`] if holes or landmarks do not fit, or a stage refuses; or if the scene has layers, of which each is a scene
+/// to be mapped by itself.
 pub fn map_drawings(scene: &Scene, drawings: &[Drawing]) -> Result<(Mapping, MappingReport), PipelineError> {
     map_drawings_observed(scene, drawings, &mut |_| ())
 }
@@ -41,6 +42,11 @@ pub fn map_drawings_observed(
     drawings: &[Drawing],
     begins: &mut dyn FnMut(Stage),
 ) -> Result<(Mapping, MappingReport), PipelineError> {
+    if !scene.layers.is_empty() {
+        return Err(PipelineError::Layered {
+            layers: scene.layers.iter().map(|layer| format!("'{}'", layer.name)).collect(),
+        });
+    }
     let drawn = scene.only_drawn();
     if drawn.poses.is_empty() || drawn.poses.len() != drawings.len() {
         let problem = format!("{} drawings for {} drawn poses", drawings.len(), drawn.poses.len());

@@ -89,6 +89,11 @@ impl ShapePoint {
         Some(Self { anchors })
     }
 
+    /// The point that has these vertices and shares in each pose.
+    pub(super) fn from_anchors(anchors: Vec<([usize; 3], [f64; 3])>) -> Self {
+        Self { anchors }
+    }
+
     /// Where it is on the mesh at `positions`, blended with `weights`.
     #[must_use]
     pub fn at(&self, positions: &[Point], weights: &[f64]) -> Point {
@@ -210,7 +215,8 @@ pub fn reach_landmarks(
 ) -> Result<Reach, PipelineError> {
     let drawings = read_drawings(scene)?;
     let (mapping, report) = map_drawings(scene, &drawings)?;
-    let scene = &placed(scene, &mapping);
+    let every: Vec<usize> = (0..scene.poses.len()).collect();
+    let scene = &placed(scene, [(every.as_slice(), &mapping)])?;
     let weights = weight_provider(scene, None)?;
     let blend = RigidBlend::new(&mapping.poses, &blend_options(scene, &mapping))?;
     let is_point = |landmark: &&PlacedLandmark| landmark.kind != LandmarkKind::Line;

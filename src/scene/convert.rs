@@ -3,6 +3,7 @@
 mod blending;
 mod deformed;
 mod landmarks;
+mod layered;
 mod playing;
 mod poses;
 
@@ -13,7 +14,8 @@ use toml::Spanned;
 use super::error::{SceneError, SceneProblem};
 use super::file::SceneFile;
 use super::settings::{
-    Holes, InputSettings, Layout, MeshSettings, PoseSpaceSettings, Provider, PseudoPose, Radial, Scene, WeightRange,
+    ArtChoice, ColourBlend, Holes, InputSettings, Layout, MeshSettings, PoseSpaceSettings, Provider, PseudoPose,
+    Radial, Scene, WeightRange,
 };
 
 /// The version of the format.
@@ -91,17 +93,11 @@ impl Reader<'_> {
         if version != VERSION {
             return Err(self.fail(written.version.span().start, SceneProblem::Version { found: version }));
         }
-        if let Some(layer) = written.layer.first() {
-            self.unsupported::<()>(
-                layer.span().start,
-                "[[layer]]",
-                "remove it and give each pose one source",
-            )?;
-        }
-        let poses = self.poses(&written.pose)?;
+        let layer_names = self.layer_names(&written.layer)?;
+        let poses = self.poses(&written.pose, &layer_names)?;
         let names: Vec<&str> = poses.iter().map(|p| p.name.as_str()).collect();
-        self.check_drawn(written.reference.as_ref(), &written.landmark, &poses)?;
-        let (landmarks, paths) = self.landmarks(&written.landmark, &names)?;
+        self.check_drawn(written.reference.as_ref(), &written.landmark, &written.pose)?;
+        let (landmarks, paths) = self.landmarks(&written.landmark, &names, &layer_names)?;
         let reference = match &written.reference {
             Some(name) => Some(self.pose_index(name, "`reference`", &names)?),
             None => None,
@@ -119,7 +115,7 @@ impl Reader<'_> {
                 at: self.place(&table.at, "`at` of a [[pseudo_pose]]", Some(dimension))?,
             });
         }
-        Ok(Scene {
+        let mut scene = Scene {
             file: self.file.clone(),
             reference,
             input,
@@ -149,12 +145,34 @@ impl Reader<'_> {
                 |v| (0.0..=1.0).contains(&v),
                 "between 0 and 1",
             )?,
+            colour_blend: self.choice(
+                &written.texture.blending,
+                "[texture] blending",
+                &[("plain", ColourBlend::Plain), ("linear", ColourBlend::Linear)],
+                "'plain' or 'linear'",
+            )?,
+            art: self.choice(
+                &written.texture.drawing,
+                "[texture] drawing",
+                &[("curves", ArtChoice::Curves), ("pixels", ArtChoice::Pixels)],
+                "'curves' or 'pixels'",
+            )?,
             animation: self.animation(&written.animation, &poses)?,
             poses,
             pseudo_poses,
             landmarks,
             paths,
-        })
+            layers: Vec::new(),
+        };
+        self.check_layer_words(&written, &layer_names)?;
+        if !layer_names.is_empty() {
+            scene.layers = self.layers(&written, &scene, &layer_names)?;
+            let orders = self.draw_orders(&written, &scene.layers, &layer_names)?;
+            for (pose, order) in scene.poses.iter_mut().zip(orders) {
+                pose.draw_order = order;
+            }
+        }
+        Ok(scene)
     }
 
     fn number(

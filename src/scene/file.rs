@@ -81,6 +81,8 @@ pub(super) struct RegionTable {
 #[serde(deny_unknown_fields)]
 pub(super) struct TextureTable {
     pub(super) sharpness: Option<Spanned<f64>>,
+    pub(super) blending: Option<Spanned<String>>,
+    pub(super) drawing: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -95,6 +97,8 @@ pub(super) struct PoseTable {
     pub(super) turns: Option<Spanned<i64>>,
     pub(super) deform_of: Option<Spanned<String>>,
     pub(super) handles: Option<Spanned<Vec<HandleTable>>>,
+    /// Layers from back to front.
+    pub(super) order: Option<Spanned<Vec<Spanned<String>>>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -102,6 +106,7 @@ pub(super) struct PoseTable {
 pub(super) struct HandleTable {
     pub(super) from: Vec<f64>,
     pub(super) to: Vec<f64>,
+    pub(super) layer: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -118,13 +123,22 @@ pub(super) struct LandmarkTable {
     /// A point a pose, or with `path` a polyline a pose.
     pub(super) at: BTreeMap<String, Spanned<Value>>,
     pub(super) path: Option<Spanned<bool>>,
+    pub(super) layer: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LayerTable {
-    #[expect(dead_code, reason = "layers are refused as a whole")]
-    pub(super) name: String,
+    pub(super) name: Spanned<String>,
+    pub(super) anchor: Option<Spanned<LayerAnchorTable>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LayerAnchorTable {
+    pub(super) layer: Spanned<String>,
+    /// A landmark.
+    pub(super) at: Spanned<String>,
 }
 
 #[derive(Debug, Default, Deserialize)]

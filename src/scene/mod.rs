@@ -10,15 +10,17 @@ mod animation;
 mod convert;
 mod error;
 mod file;
+mod layers;
 mod new;
 mod settings;
 mod source;
 
 pub use animation::{Animation, Key};
 pub use error::{SceneError, SceneProblem};
+pub use layers::{LayerAnchor, SceneLayer};
 pub use new::{NewPose, scene_text};
 pub use settings::{
-    Anchor, Background, BlendSettings, DeformedCopy, DrawnSource, Facing, HandleMove, Holes, InputSettings, Layout,
-    MeshSettings, PoseSource, PoseSpaceSettings, Provider, PseudoPose, Radial, Region, Scene, SceneLandmark, ScenePath,
-    ScenePose, SoftAnchor, WeightRange,
+    Anchor, ArtChoice, Background, BlendSettings, ColourBlend, DeformedCopy, DrawnSource, Extent, Facing, HandleMove,
+    Holes, InputSettings, Layout, MeshSettings, PoseSource, PoseSpaceSettings, Provider, PseudoPose, Radial, Region,
+    Scene, SceneLandmark, ScenePath, ScenePose, SoftAnchor, WeightRange,
 };

@@ -3,7 +3,7 @@
 use crate::blend::{FrameGuard, Reference, Stretch};
 use std::path::PathBuf;
 
-use super::Animation;
+use super::{Animation, SceneLayer};
 use crate::math::Point;
 
 /// A scene: everything the artist says about a character.
@@ -28,6 +28,10 @@ pub struct Scene {
     pub blend: BlendSettings,
     /// How sharply textures follow the nearest pose, `sigma`, from 0 (as the shape) to 1 (nearest pose only).
     pub texture_sharpness: f64,
+    /// In which light colours are averaged.
+    pub colour_blend: ColourBlend,
+    /// Whether vector drawings are drawn as curves.
+    pub art: ArtChoice,
     /// The poses, at least one.
     pub poses: Vec<ScenePose>,
     /// Blends that are wanted elsewhere than they are (SBE 4).
@@ -36,8 +40,40 @@ pub struct Scene {
     pub landmarks: Vec<SceneLandmark>,
     /// Lines that correspond, named by `path = true` landmarks.
     pub paths: Vec<ScenePath>,
+    /// Parts in front of one another, from back to front; empty if the drawings are whole.
+    pub layers: Vec<SceneLayer>,
     /// What is played.
     pub animation: Animation,
+}
+
+/// In which light the colours of drawings are averaged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ColourBlend {
+    /// As the numbers stand in the files, like most drawing programs.
+    #[default]
+    Plain,
+    /// In linear light: mixtures are brighter, as of real lights.
+    Linear,
+}
+
+/// Whether vector drawings are drawn as curves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ArtChoice {
+    /// As curves, where all drawings of a layer are vector drawings.
+    #[default]
+    Curves,
+    /// From pixels.
+    Pixels,
+}
+
+/// How much of a file a drawing is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Extent {
+    /// All that is drawn in it.
+    #[default]
+    Everything,
+    /// Its element alone.
+    Element,
 }
 
 /// Whether holes of the drawings are holes of the shape.
@@ -227,6 +263,8 @@ pub struct ScenePose {
     pub at: Vec<f64>,
     /// Whole turns added to its mean rotation.
     pub turns: i32,
+    /// All layers from back to front, by index; empty in a scene without.
+    pub draw_order: Vec<usize>,
 }
 
 /// Where a pose's shape comes from.
@@ -236,6 +274,8 @@ pub enum PoseSource {
     Drawn(DrawnSource),
     /// Another pose, deformed.
     Deformed(DeformedCopy),
+    /// Each of its layers has its own; see [`Scene::layers`].
+    Layered,
 }
 
 /// A drawing.
@@ -249,6 +289,8 @@ pub struct DrawnSource {
     pub element: Option<String>,
     /// Whether it is reflected.
     pub facing: Facing,
+    /// Whether only the element is drawn.
+    pub extent: Extent,
 }
 
 /// A copy of another pose whose handles are moved as rigidly as possible (NWM 3.2). It has the other's picture, and what
@@ -259,7 +301,7 @@ pub struct DeformedCopy {
     pub of: usize,
     /// The line of the scene file with the handles.
     pub line: usize,
-    /// At least one.
+    /// At least one, but in a layer that stays as it is.
     pub handles: Vec<HandleMove>,
 }
 
@@ -288,6 +330,8 @@ pub struct SceneLandmark {
     pub name: String,
     /// The line of the scene file.
     pub line: usize,
+    /// The layer it is on, in a scene with layers.
+    pub layer: Option<usize>,
     /// Where it lies on each pose, in source pixels or SVG user units; `None` where the pose lacks it.
     pub at: Vec<Option<Point>>,
 }
@@ -299,6 +343,8 @@ pub struct ScenePath {
     pub name: String,
     /// The line of the scene file.
     pub line: usize,
+    /// The layer it is on, in a scene with layers.
+    pub layer: Option<usize>,
     /// Its points on each pose from start to end, in source pixels or SVG user units; at least two, no two successive
     /// ones equal. `None` where the pose lacks it.
     pub at: Vec<Option<Vec<Point>>>,
@@ -359,6 +405,7 @@ impl Scene {
             match &self.poses.get(at)?.source {
                 PoseSource::Drawn(drawing) => return Some((at, drawing)),
                 PoseSource::Deformed(copy) => at = copy.of,
+                PoseSource::Layered => return None,
             }
         }
         None
@@ -367,21 +414,7 @@ impl Scene {
     /// The scene without its deformed copies: what is read and matched.
     #[must_use]
     pub fn only_drawn(&self) -> Self {
-        let kept = self.drawn_poses();
-        let place = |index: usize| kept.iter().position(|&k| k == index);
-        let mut scene = self.clone();
-        scene.poses = kept.iter().map(|&k| self.poses[k].clone()).collect();
-        scene.reference = self.reference.and_then(place);
-        if let Reference::Pose(pose) = scene.blend.reference {
-            scene.blend.reference = place(pose).map_or(Reference::Canonical, Reference::Pose);
-        }
-        for (landmark, whole) in scene.landmarks.iter_mut().zip(&self.landmarks) {
-            landmark.at = kept.iter().map(|&k| whole.at[k]).collect();
-        }
-        for (path, whole) in scene.paths.iter_mut().zip(&self.paths) {
-            path.at = kept.iter().map(|&k| whole.at[k].clone()).collect();
-        }
-        scene
+        self.with_poses(&self.drawn_poses())
     }
 
     /// A short name for files made from this scene: the file's own, or its folder's if it is called `scene.toml`.

@@ -7,7 +7,7 @@ use crate::math::Point;
 use crate::outline::Ring;
 use crate::scene::error::SceneProblem;
 use crate::scene::file::{HandleTable, LandmarkTable, PoseTable};
-use crate::scene::settings::{DeformedCopy, HandleMove, PoseSource, ScenePose};
+use crate::scene::settings::{DeformedCopy, HandleMove, ScenePose};
 
 impl Reader<'_> {
     /// The copy that a pose with `deform_of` is; `names` are those of all poses.
@@ -88,10 +88,13 @@ impl Reader<'_> {
     /// Refuses copies of one another, and scenes in which nothing is drawn.
     pub(super) fn check_copies(&self, tables: &[Spanned<PoseTable>], poses: &[ScenePose]) -> Checked<()> {
         for (pose, table) in poses.iter().zip(tables) {
-            let mut at = pose;
+            let mut at = table.get_ref();
             let mut passed = 0;
-            while let PoseSource::Deformed(copy) = &at.source {
-                at = &poses[copy.of];
+            while let Some(of) = &at.deform_of {
+                let Some(next) = poses.iter().position(|pose| &pose.name == of.get_ref()) else {
+                    break;
+                };
+                at = tables[next].get_ref();
                 passed += 1;
                 if passed > poses.len() {
                     let of = table.get_ref().deform_of.as_ref();
@@ -113,12 +116,11 @@ impl Reader<'_> {
         &self,
         reference: Option<&Spanned<String>>,
         landmarks: &[Spanned<LandmarkTable>],
-        poses: &[ScenePose],
+        tables: &[Spanned<PoseTable>],
     ) -> Checked<()> {
         let is_copy = |name: &str| {
-            poses
-                .iter()
-                .any(|p| p.name == name && matches!(p.source, PoseSource::Deformed(_)))
+            let mut poses = tables.iter().map(Spanned::get_ref);
+            poses.any(|pose| pose.name.get_ref() == name && pose.deform_of.is_some())
         };
         if let Some(name) = reference.filter(|name| is_copy(name.get_ref())) {
             return Err(self.fail(

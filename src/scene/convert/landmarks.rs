@@ -16,6 +16,7 @@ impl Reader<'_> {
         &self,
         tables: &[Spanned<LandmarkTable>],
         names: &[&str],
+        layers: &[String],
     ) -> Checked<(Vec<SceneLandmark>, Vec<ScenePath>)> {
         let mut landmarks: Vec<SceneLandmark> = Vec::new();
         let mut paths: Vec<ScenePath> = Vec::new();
@@ -28,13 +29,26 @@ impl Reader<'_> {
                 return Err(self.fail(start, SceneProblem::BadName { kind: "landmark", name }));
             }
             let line = self.line(start);
+            let layer = match &written.layer {
+                Some(layer) => Some(self.layer_index(layer, &format!("landmark '{name}'"), layers)?),
+                None if layers.is_empty() => None,
+                None => {
+                    return Err(self.fail(
+                        start,
+                        SceneProblem::Format(format!(
+                            "landmark '{name}' does not say which layer it is on; add `layer = \"{}\"`",
+                            layers.join("\"` or `layer = \"")
+                        )),
+                    ));
+                }
+            };
             if written.path.as_ref().is_some_and(|path| *path.get_ref()) {
                 let at = self.on_poses(&written.at, &name, names, |value, key| self.polyline(value, key))?;
-                paths.push(ScenePath { name, line, at });
+                paths.push(ScenePath { name, line, layer, at });
             } else {
                 let point = |value: &Spanned<Value>, key: &str| self.point(value.get_ref(), value.span().start, key);
                 let at = self.on_poses(&written.at, &name, names, point)?;
-                landmarks.push(SceneLandmark { name, line, at });
+                landmarks.push(SceneLandmark { name, line, layer, at });
             }
         }
         Ok((landmarks, paths))

@@ -8,14 +8,14 @@ use toml::{Spanned, Value};
 use super::{Checked, Reader};
 use crate::scene::error::SceneProblem;
 use crate::scene::file::PoseTable;
-use crate::scene::settings::{DrawnSource, Facing, PoseSource, ScenePose};
+use crate::scene::settings::{DrawnSource, Extent, Facing, PoseSource, ScenePose};
 use crate::scene::source;
 
 /// The most whole turns that can be added to a pose.
 const MOST_TURNS: i64 = 1000;
 
 impl Reader<'_> {
-    pub(super) fn poses(&self, tables: &[Spanned<PoseTable>]) -> Checked<Vec<ScenePose>> {
+    pub(super) fn poses(&self, tables: &[Spanned<PoseTable>], layers: &[String]) -> Checked<Vec<ScenePose>> {
         if tables.is_empty() {
             return Err(self.fail(self.text.len(), SceneProblem::NoPose));
         }
@@ -33,7 +33,7 @@ impl Reader<'_> {
         let names: Vec<String> = tables.iter().map(|t| t.get_ref().name.get_ref().clone()).collect();
         let mut poses: Vec<ScenePose> = Vec::new();
         for (index, table) in tables.iter().enumerate() {
-            let pose = self.pose(table, index, &names, poses.first().map(|p| p.at.len()))?;
+            let pose = self.pose(table, index, &names, layers, poses.first().map(|p| p.at.len()))?;
             let at = table.get_ref().name.span().start;
             if pose.name.is_empty() || poses.iter().any(|p| p.name == pose.name) {
                 return Err(self.fail(
@@ -65,11 +65,13 @@ impl Reader<'_> {
         table: &Spanned<PoseTable>,
         index: usize,
         names: &[String],
+        layers: &[String],
         dimension: Option<usize>,
     ) -> Checked<ScenePose> {
         let written = table.get_ref();
         let name = written.name.get_ref().clone();
         let source = match &written.deform_of {
+            _ if !layers.is_empty() => PoseSource::Layered,
             Some(of) => PoseSource::Deformed(self.deformed(written, of, names)?),
             None => PoseSource::Drawn(self.drawn(written)?),
         };
@@ -93,6 +95,7 @@ impl Reader<'_> {
             source,
             at,
             turns: turns as i32,
+            draw_order: Vec::new(),
         })
     }
 
@@ -133,6 +136,7 @@ impl Reader<'_> {
             file: PathBuf::from(path),
             line: self.line(source.span().start),
             element,
+            extent: Extent::Everything,
             facing: if written.mirror == Some(true) {
                 Facing::Mirrored
             } else {
@@ -145,7 +149,12 @@ impl Reader<'_> {
     fn word(&self, value: &Spanned<Value>, key: &str) -> Checked<String> {
         match value.get_ref() {
             Value::String(word) => Ok(word.clone()),
-            Value::Table(_) => self.unsupported(value.span().start, &format!("{key} per layer"), "give one string"),
+            Value::Table(_) => Err(self.fail(
+                value.span().start,
+                SceneProblem::Format(format!(
+                    "{key} is a table with one a layer, but the scene has no [[layer]]; give one string, or list the layers"
+                )),
+            )),
             other => Err(self.fail(
                 value.span().start,
                 SceneProblem::Format(format!("{key} is {other}, but must be a string in quotes")),

@@ -125,17 +125,11 @@ fn unknown_keys_are_refused_with_their_line() {
 #[test]
 fn keys_of_later_releases_are_refused_by_name() {
     for (text, line, word) in [
-        ("[[layer]]\nname = \"arm\"\n", 10, "layer"),
         ("[pose_space]\nprovider = \"rbf\"\nbounded = true\n", 12, "bounded"),
         (
             "[pose_space]\nprovider = \"rbf\"\nwalls = [[[0.2, 0.0], [0.2, 0.6]]]\n",
             12,
             "walls",
-        ),
-        (
-            "[[pose]]\nname = \"c\"\nsource = { body = \"c.svg\" }\nat = [5, 5]\n",
-            12,
-            "layer",
         ),
     ] {
         let (found, message) = refused(&format!("{TWO}{text}"));
@@ -396,3 +390,5 @@ fn a_new_scene_reads_back() {
         .replace("# at = {", "at = {");
     assert_eq!(parse(&open).expect("a scene").landmarks.len(), 1);
 }
+
+mod layers;

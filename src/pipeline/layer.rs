@@ -1,0 +1,242 @@
+//! One layer of a character: a shape of its own, and where it hangs.
+//!
+//! A layer is mapped and blended as if it were a scene, with the weights of the poses that have it ([`weights_among`]). One that is
+//! anchored is then moved as a whole, so that its point comes to lie on the other layer's, each where its own mesh carries it.
+//! Poses that lack a layer fade it out, by what their drawings count in the frame.
+
+use super::character::blend_options;
+use super::{MappingReport, PipelineError, ShapePoint, map_drawings, read_drawings};
+use crate::blend::{BlendReport, RigidBlend};
+use crate::input::Drawing;
+use crate::math::Point;
+use crate::mesh::PointLocator;
+use crate::pose::Mapping;
+use crate::render::Silhouette;
+use crate::scene::{LayerAnchor, Scene, SceneLayer};
+use crate::texture::{TextureError, texture_weights, weights_among};
+
+/// A layer of a scene, or the whole of a scene without layers.
+pub(super) struct Part<'a> {
+    pub(super) name: String,
+    /// The poses of the whole scene that have it.
+    pub(super) poses: Vec<usize>,
+    pub(super) scene: &'a Scene,
+    anchor: Option<&'a LayerAnchor>,
+    /// Its name in remarks; a scene without layers needs none.
+    named: Option<&'a str>,
+}
+
+/// The layers of a scene, back to front; the scene itself if it has none.
+pub(super) fn parts<'a>(scene: &'a Scene) -> Vec<Part<'a>> {
+    if scene.layers.is_empty() {
+        return vec![Part {
+            name: scene.short_name(),
+            poses: (0..scene.poses.len()).collect(),
+            scene,
+            anchor: None,
+            named: None,
+        }];
+    }
+    let part = |layer: &'a SceneLayer| {
+        let SceneLayer {
+            name,
+            poses,
+            scene,
+            anchor,
+        } = layer;
+        Part {
+            name: name.clone(),
+            poses: poses.clone(),
+            scene,
+            anchor: anchor.as_ref(),
+            named: Some(name),
+        }
+    };
+    scene.layers.iter().map(part).collect()
+}
+
+impl Part<'_> {
+    /// Reads and maps the layer's drawings.
+    pub(super) fn mapped(&self) -> Result<(Vec<Drawing>, Mapping, MappingReport), PipelineError> {
+        let drawings = read_drawings(self.scene).map_err(|error| self.refusal(error))?;
+        let (mapping, mut report) = map_drawings(self.scene, &drawings).map_err(|error| self.refusal(error))?;
+        for note in &mut report.notes {
+            *note = self.remark(note);
+        }
+        Ok((drawings, mapping, report))
+    }
+
+    fn remark(&self, note: &str) -> String {
+        match self.named {
+            Some(name) => format!("layer '{name}': {note}"),
+            None => note.to_owned(),
+        }
+    }
+
+    fn refusal(&self, error: PipelineError) -> PipelineError {
+        match self.named {
+            Some(name) => PipelineError::Layer {
+                layer: name.to_owned(),
+                source: Box::new(error),
+            },
+            None => error,
+        }
+    }
+
+    /// The layer's shape, not yet hung on another one.
+    pub(super) fn shape(&self, mapping: Mapping, notes: &mut Vec<String>) -> Result<LayerShape, PipelineError> {
+        let blend = RigidBlend::new(&mapping.poses, &blend_options(self.scene, &mapping))
+            .map_err(|error| self.refusal(error.into()))?;
+        if blend.turns_are_ambiguous() {
+            notes.push(self.remark(
+                "some poses are turned by half a turn against one another, so either way round is as good; \
+                 set `turns` on a pose to choose",
+            ));
+        }
+        Ok(LayerShape {
+            name: self.name.clone(),
+            poses: self.poses.clone(),
+            silhouette: Silhouette::new(&mapping),
+            mapping,
+            blend,
+            tie: None,
+        })
+    }
+}
+
+/// Hangs the layers on one another where the scene says so; `shapes` has one a part.
+pub(super) fn tie(parts: &[Part<'_>], shapes: &mut [LayerShape]) -> Result<(), PipelineError> {
+    for (k, part) in parts.iter().enumerate() {
+        let Some(anchor) = part.anchor else { continue };
+        let own = &shapes[k];
+        let other = &shapes[anchor.to];
+        let among: Option<Vec<usize>> = own
+            .poses
+            .iter()
+            .map(|pose| other.poses.iter().position(|p| p == pose))
+            .collect();
+        let tie = among.and_then(|others| {
+            Some(Tie {
+                to: anchor.to,
+                own: shape_point(part.scene, anchor, own, &(0..own.poses.len()).collect::<Vec<_>>())?,
+                other: shape_point(part.scene, anchor, other, &others)?,
+            })
+        });
+        let refusal = || {
+            let problem = format!("it cannot be anchored at landmark '{}'", anchor.landmark);
+            part.refusal(PipelineError::stage(&[], None, problem))
+        };
+        shapes[k].tie = Some(tie.ok_or_else(refusal)?);
+    }
+    Ok(())
+}
+
+/// The anchor as a point of `shape`, for each pose of the anchored layer; `poses` are these poses in `shape`. On deformed
+/// copies the mesh carries it from their original.
+fn shape_point(scene: &Scene, anchor: &LayerAnchor, shape: &LayerShape, poses: &[usize]) -> Option<ShapePoint> {
+    let triangles = shape.mapping.poses.topology().triangles();
+    let positions = shape.mapping.poses.positions();
+    let mut anchors = Vec::new();
+    for pose in 0..poses.len() {
+        let (original, _) = scene.drawing_of(pose)?;
+        let place = anchor.at[original]?;
+        let located = PointLocator::new(triangles, &positions[poses[original]]).nearest(place)?;
+        anchors.push((triangles[located.triangle], located.barycentric));
+    }
+    Some(ShapePoint::from_anchors(anchors))
+}
+
+/// The shape of one layer, with everything that is computed once.
+#[derive(Debug)]
+pub struct LayerShape {
+    name: String,
+    poses: Vec<usize>,
+    pub(super) silhouette: Silhouette,
+    mapping: Mapping,
+    blend: RigidBlend,
+    tie: Option<Tie>,
+}
+
+/// Where a layer hangs on another one: a point of both, in the poses of the layer that hangs.
+#[derive(Debug)]
+struct Tie {
+    to: usize,
+    own: ShapePoint,
+    other: ShapePoint,
+}
+
+/// A layer in one frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PosedLayer {
+    /// #vertices positions, in source units.
+    pub positions: Vec<Point>,
+    /// The weights of its poses; sum 1.
+    pub weights: Vec<f64>,
+    /// How much of each pose's drawing is seen; sum 1.
+    pub texture_weights: Vec<f64>,
+    /// How much of the layer is seen, from 0 to 1: 1 unless poses that count lack it.
+    pub opacity: f64,
+    /// What there is to say about its shape.
+    pub report: BlendReport,
+}
+
+impl LayerShape {
+    /// The layer's name; of a scene without layers, the scene's.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The poses of the scene that have the layer.
+    #[must_use]
+    pub fn poses(&self) -> &[usize] {
+        &self.poses
+    }
+
+    /// Its mapping; it has the layer's poses.
+    #[must_use]
+    pub fn mapping(&self) -> &Mapping {
+        &self.mapping
+    }
+
+    /// The factorised blend of its poses.
+    #[must_use]
+    pub fn blend(&self) -> &RigidBlend {
+        &self.blend
+    }
+
+    /// The layer that it hangs on.
+    pub(super) fn hangs_on(&self) -> Option<usize> {
+        self.tie.as_ref().map(|tie| tie.to)
+    }
+
+    /// The layer where the scene's poses count with `weights` and their drawings with `shown`, not yet hung on another one.
+    pub(super) fn posed(&self, weights: &[f64], shown: &[f64], sharpness: f64) -> Result<PosedLayer, PipelineError> {
+        let own = weights_among(weights, &self.poses);
+        let mut positions = Vec::new();
+        let report = self.blend.blend(&own, &mut self.blend.scratch(), &mut positions)?;
+        let (texture_weights, opacity) = self.seen(&own, shown, sharpness)?;
+        Ok(PosedLayer {
+            positions,
+            weights: own,
+            texture_weights,
+            opacity,
+            report,
+        })
+    }
+
+    fn seen(&self, own: &[f64], shown: &[f64], sharpness: f64) -> Result<(Vec<f64>, f64), TextureError> {
+        if own.len() == shown.len() {
+            return Ok((shown.to_vec(), 1.0));
+        }
+        let opacity: f64 = self.poses.iter().filter_map(|&pose| shown.get(pose)).sum();
+        Ok((texture_weights(own, sharpness)?, opacity.clamp(0.0, 1.0)))
+    }
+
+    /// By how much the layer, posed as `own`, must be moved to hang where it belongs on `other`.
+    pub(super) fn gap(&self, own: &PosedLayer, other: &PosedLayer) -> Point {
+        self.tie.as_ref().map_or_else(Point::zeros, |tie| {
+            tie.other.at(&other.positions, &own.weights) - tie.own.at(&own.positions, &own.weights)
+        })
+    }
+}
