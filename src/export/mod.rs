@@ -5,6 +5,7 @@
 
 mod apng;
 mod gif;
+mod keys;
 mod palette;
 mod pending;
 mod png;
@@ -12,6 +13,7 @@ mod sequence;
 
 pub use apng::ApngWriter;
 pub use gif::{Backdrop, GifWriter};
+pub use keys::{Keys, place_keys};
 pub use palette::Palette;
 pub use pending::PendingFile;
 pub use png::png_bytes;
