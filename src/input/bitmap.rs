@@ -145,6 +145,7 @@ fn trace(image: &RgbaImage, threshold: f32, hole_rule: HoleRule) -> Result<Drawi
     Ok(Drawing {
         outline,
         picture,
+        art: None,
         notes,
     })
 }

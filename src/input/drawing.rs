@@ -1,6 +1,6 @@
 //! What the input stage hands on: one pose's outline with its pixels.
 
-use super::Picture;
+use super::{Art, Picture};
 use crate::math::Point;
 use crate::outline::Outline;
 
@@ -11,6 +11,8 @@ pub struct Drawing {
     pub outline: Outline,
     /// The pixels, background removed.
     pub picture: Picture,
+    /// The drawing as curves. `None` for a bitmap, and for an SVG file with something that curves cannot say, which a note names.
+    pub art: Option<Art>,
     /// What was left out, for the artist to know.
     pub notes: Vec<InputNote>,
 }
@@ -52,6 +54,16 @@ pub enum InputNote {
         /// How many.
         count: usize,
     },
+    /// Vector art that has to be shown from its pixels.
+    NotCurves {
+        /// Which element, and what about it.
+        reason: String,
+    },
+    /// Translucent groups whose elements overlap: as curves, each element is translucent by itself.
+    TranslucentGroups {
+        /// How many.
+        count: usize,
+    },
 }
 
 impl std::fmt::Display for InputNote {
@@ -75,6 +87,14 @@ impl std::fmt::Display for InputNote {
                     "{what} ({count} of them) cannot be drawn; convert to paths before export"
                 )
             }
+            Self::NotCurves { reason } => {
+                write!(f, "it is drawn from pixels, not as curves, because {reason}")
+            }
+            Self::TranslucentGroups { count } => write!(
+                f,
+                "{count} translucent groups have elements that overlap, which show through one another when drawn as curves; \
+                 unite the elements or give each its own opacity"
+            ),
         }
     }
 }

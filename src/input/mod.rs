@@ -3,19 +3,26 @@
 //! [`read_bitmap`] and [`read_svg`] are pure; [`open_bitmap`] and [`open_svg`] are the ones that touch the disk. What was left out of a drawing (loose
 //! parts, specks, pin-holes) is told in its [`InputNote`]s; what cannot be used is an [`InputError`].
 
+mod art;
 mod bitmap;
 mod coverage;
 mod decode;
 mod drawing;
 mod error;
 mod iso_line;
+mod path;
 mod picture;
 mod svg;
+mod svg_art;
 mod svg_numbers;
 mod svg_silhouette;
 
+pub use art::{Art, ArtElement};
 pub use bitmap::{BitmapOptions, HoleRule, open_bitmap, read_bitmap};
 pub use drawing::{Drawing, InputNote};
 pub use error::InputError;
+pub use path::{
+    Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke, Subpath,
+};
 pub use picture::Picture;
-pub use svg::{SvgOptions, open_svg, read_svg};
+pub use svg::{Extent, SvgOptions, open_svg, read_svg};

@@ -6,7 +6,9 @@
 //! 2. Parse with usvg: groups, transforms, `use`, CSS, shapes and strokes come out as paths. Nothing outside the file is
 //!    ever opened, whatever it refers to; embedded images and text are not drawn and are reported.
 //! 3. Unite what is drawn, in the element that is asked for or in all (module `svg_silhouette`).
-//! 4. Rasterise the whole drawing around that outline with resvg: an element names a shape, not what is painted on it.
+//! 4. Rasterise around that outline with resvg: the whole drawing, since an element names a shape, not what is painted on it,
+//!    or the element alone where the options say so ([`Extent`]).
+//! 5. Read the same elements as curves (module `svg_art`).
 //!
 //! Coordinates are the user units of the file's `viewBox`, at usvg's single precision (1e-7 of their size).
 
@@ -16,6 +18,7 @@ use kurbo::Affine;
 use resvg::tiny_skia::{Pixmap, Transform};
 use usvg::roxmltree;
 
+use super::svg_art::read_art;
 use super::svg_numbers::check_numbers;
 use super::svg_silhouette::{affine, silhouette};
 use super::{Drawing, HoleRule, InputError, InputNote, Picture};
@@ -37,13 +40,25 @@ const MARGIN_PX: f64 = 2.0;
 /// How an SVG file is read.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SvgOptions {
-    /// The id of the element that is meant. Default: everything that is drawn.
+    /// The id of the element whose outline is meant. Default: everything that is drawn.
     pub element: Option<String>,
+    /// What belongs to the drawing. Default: everything in the file.
+    pub extent: Extent,
     /// Pixels to a user unit of the picture, at most as many as make it 8192 pixels long. Default: as many as make the
     /// longer side of the outline 1024 pixels long.
     pub pixels_per_unit: Option<f64>,
     /// What becomes of holes. Default: kept.
     pub holes: HoleRule,
+}
+
+/// What of an SVG file belongs to a drawing of which an element is named.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Extent {
+    /// Everything in the file: the element is the shape's silhouette, painted over by the others.
+    #[default]
+    Everything,
+    /// Only the element, with all that is in it: a file that holds several layers.
+    Element,
 }
 
 /// Reads the drawing in the file at `path`; see [`read_svg`].
@@ -96,12 +111,19 @@ pub fn read_svg(bytes: &[u8], options: &SvgOptions) -> Result<Drawing, InputErro
     };
     let (outline, mut notes) = silhouette(&nodes, to_user, options.holes)?;
     note_undrawn(&document, &mut notes);
-    // The element says whose outline is meant; the drawing is everything in the file.
-    let everything: Vec<&usvg::Node> = tree.root().children().iter().collect();
-    let picture = rasterise(&everything, to_user, &outline, options.pixels_per_unit)?;
+    // The element says whose outline is meant; the drawing is everything in the file, unless it is one layer of it.
+    let drawn: Vec<&usvg::Node> = match options.extent {
+        Extent::Everything => tree.root().children().iter().collect(),
+        Extent::Element => nodes,
+    };
+    let picture = rasterise(&drawn, to_user, &outline, options.pixels_per_unit)?;
+    let art = read_art(&drawn, to_user, &mut notes)
+        .map_err(|reason| notes.push(InputNote::NotCurves { reason }))
+        .ok();
     Ok(Drawing {
         outline,
         picture,
+        art,
         notes,
     })
 }
@@ -129,9 +151,13 @@ fn find<'a>(group: &'a usvg::Group, id: &str) -> Option<&'a usvg::Node> {
         if node.id() == id {
             return Some(node);
         }
-        match node {
-            usvg::Node::Group(inner) => find(inner, id),
-            _ => None,
+        let usvg::Node::Group(inner) = node else {
+            return None;
+        };
+        // The style of a path puts a group without a name around it.
+        match inner.children() {
+            [usvg::Node::Path(path)] if inner.id().is_empty() && path.id() == id => Some(node),
+            _ => find(inner, id),
         }
     })
 }

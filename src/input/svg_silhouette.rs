@@ -277,7 +277,7 @@ fn add_region(
     Ok(())
 }
 
-fn style(stroke: &usvg::Stroke, curve: &BezPath, tolerance: f64) -> kurbo::Stroke {
+pub(super) fn style(stroke: &usvg::Stroke, curve: &BezPath, tolerance: f64) -> kurbo::Stroke {
     let cap = match stroke.linecap() {
         usvg::LineCap::Butt => kurbo::Cap::Butt,
         usvg::LineCap::Round => kurbo::Cap::Round,
@@ -312,7 +312,7 @@ pub(super) fn affine(t: usvg::Transform) -> Affine {
     Affine::new([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty].map(f64::from))
 }
 
-fn bezier(path: &usvg::tiny_skia_path::Path) -> BezPath {
+pub(super) fn bezier(path: &usvg::tiny_skia_path::Path) -> BezPath {
     use usvg::tiny_skia_path::PathSegment;
     let p = |p: usvg::tiny_skia_path::Point| kurbo::Point::new(f64::from(p.x), f64::from(p.y));
     path.segments()

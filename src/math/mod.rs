@@ -11,11 +11,13 @@ pub mod angle;
 pub mod matrix;
 pub mod point;
 pub mod predicate;
+mod restricted;
 pub mod sine;
 pub mod smooth_step;
 mod vectorised;
 
 pub use matrix::{Matrix, PolarSplit, rotation};
 pub use point::Point;
+pub use restricted::restricted_weights;
 pub use smooth_step::{limit_weights, smooth_step};
 pub use vectorised::vectorised;

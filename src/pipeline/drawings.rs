@@ -59,6 +59,7 @@ fn read_drawing(scene: &Scene, pose: usize, pixels_per_unit: Option<f64>) -> Res
                 element: said.element.clone(),
                 pixels_per_unit,
                 holes,
+                ..SvgOptions::default()
             },
         )
     } else {
@@ -91,6 +92,7 @@ pub(super) fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
     let Drawing {
         outline,
         mut picture,
+        art,
         notes,
     } = drawing;
     for row in picture.pixels.chunks_exact_mut(picture.width.max(1)) {
@@ -110,6 +112,7 @@ pub(super) fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
     Ok(Drawing {
         outline: Outline::new(outer, holes)?,
         picture,
+        art: art.map(|art| art.mirrored(axis)),
         notes,
     })
 }
@@ -141,6 +144,7 @@ mod tests {
                 origin: Point::zeros(),
                 pixels_per_unit: 1.0,
             },
+            art: None,
             notes: vec![],
         };
         let once = mirrored(drawing.clone()).expect("a drawing");

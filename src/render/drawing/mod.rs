@@ -4,9 +4,21 @@
 //! the same nodes with the same ids and equally many curves, whatever is seen of them: only numbers change, and the order of
 //! siblings where poses draw in different orders. So a format with keys can follow a node through the frames by its id.
 
+mod binding;
+mod carried;
+mod correspondence;
 mod frame;
+mod order;
+mod placing;
+mod raster;
+mod strand;
+mod style;
 
-pub use frame::{
+pub use carried::{CarriedDrawing, PoseArt};
+pub use frame::{VectorFrame, VectorGroup, VectorNode, VectorPicture, VectorShape};
+pub use raster::rasterise;
+
+// The style of paths is the same in drawings and frames; only the unit differs.
+pub use crate::input::{
     Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke, Subpath,
-    VectorFrame, VectorGroup, VectorNode, VectorPicture, VectorShape,
 };
