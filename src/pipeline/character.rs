@@ -10,8 +10,9 @@ use crate::blend::{self, BlendOptions};
 use crate::input::Drawing;
 use crate::math::Point;
 use crate::pose::Mapping;
+use crate::render::drawing::{CarriedDrawing, PoseArt, VectorFrame, VectorGroup, VectorNode, VectorPicture, rasterise};
 use crate::render::{Camera, Frame, Painter, PoseTexture, Texture};
-use crate::scene::{Anchor, Animation, Background, Layout, Scene};
+use crate::scene::{Anchor, Animation, ArtChoice, Background, Layout, Scene};
 use crate::texture::texture_weights;
 use crate::weights::WeightProvider;
 
@@ -25,10 +26,19 @@ pub struct Character {
     figure: Figure,
     weights: Box<dyn WeightProvider>,
     /// What each layer is drawn with.
-    art: Vec<Painter>,
+    art: Vec<LayerArt>,
     camera: Camera,
     notes: Vec<String>,
     background: Background,
+}
+
+/// What a layer is drawn with.
+#[derive(Debug)]
+enum LayerArt {
+    /// Textures of its drawings.
+    Pixels(Box<Painter>),
+    /// Its drawings' curves.
+    Curves(Box<CarriedDrawing>),
 }
 
 /// The shapes of all layers.
@@ -96,10 +106,21 @@ impl Character {
         let camera = camera(&scene.animation, size, &figure, weights.as_ref())?;
         let mut art = Vec::new();
         for ((part, shape), drawings) in parts.iter().zip(&figure.layers).zip(&mut drawings) {
-            sharpen(part.scene, drawings, camera.scale())?;
-            let (textures, texture_of) = textures(part.scene, drawings, camera.scale());
             let silhouette = shape.silhouette.clone();
-            art.push(Painter::new(shape.mapping(), textures, texture_of, silhouette, camera));
+            art.push(match curves(part.scene, drawings) {
+                Some((curves, drawing_of)) => {
+                    let (carried, remarks) =
+                        CarriedDrawing::new(shape.mapping(), curves, drawing_of, silhouette, camera);
+                    notes.extend(remarks.iter().map(|note| part.remark(note)));
+                    LayerArt::Curves(Box::new(carried))
+                }
+                None => {
+                    sharpen(part.scene, drawings, camera.scale())?;
+                    let (textures, texture_of) = textures(part.scene, drawings, camera.scale());
+                    let painter = Painter::new(shape.mapping(), textures, texture_of, silhouette, camera);
+                    LayerArt::Pixels(Box::new(painter))
+                }
+            });
         }
         Ok(Self {
             names: scene.names(),
@@ -153,26 +174,77 @@ impl Character {
     /// Paints a frame.
     #[must_use]
     pub fn paint(&self, posed: &Posed) -> Frame {
-        let [columns, rows] = self.camera.size();
+        let has_curves = self.art.iter().any(|art| matches!(art, LayerArt::Curves(_)));
+        if has_curves {
+            return rasterise(&self.draw(posed), 1);
+        }
         let mut frame: Option<Frame> = None;
         for &k in &posed.order {
             let layer = &posed.layers[k];
+            let LayerArt::Pixels(painter) = &self.art[k] else {
+                continue;
+            };
             if layer.opacity <= 0.0 {
                 continue;
             }
-            let own = self.art[k].paint(&layer.positions, &layer.weights, &layer.texture_weights);
+            let own = painter.paint(&layer.positions, &layer.weights, &layer.texture_weights);
             match &mut frame {
                 None if layer.opacity == 1.0 => frame = Some(own),
                 before => before
-                    .get_or_insert_with(|| Frame::filled(columns, rows, [0; 4]))
+                    .get_or_insert_with(|| self.clear_frame())
                     .put_over(&own, layer.opacity),
             }
         }
-        let mut frame = frame.unwrap_or_else(|| Frame::filled(columns, rows, [0; 4]));
+        let mut frame = frame.unwrap_or_else(|| self.clear_frame());
         if let Background::Colour(colour) = self.background {
             frame.put_before(colour);
         }
         frame
+    }
+
+    fn clear_frame(&self) -> Frame {
+        let [columns, rows] = self.camera.size();
+        Frame::filled(columns, rows, [0; 4])
+    }
+
+    /// Draws a frame as curves. Layers whose drawings are bitmaps are pictures in it.
+    ///
+    /// In a scene with layers every layer is a group with its name, and what is in it has names that begin with that.
+    #[must_use]
+    pub fn draw(&self, posed: &Posed) -> VectorFrame {
+        let mut nodes = Vec::new();
+        for &k in &posed.order {
+            let (layer, name) = (&posed.layers[k], self.figure.layers[k].name());
+            let mut own = match &self.art[k] {
+                LayerArt::Curves(drawing) => drawing.frame(&layer.positions, &layer.weights, &layer.texture_weights),
+                LayerArt::Pixels(painter) => vec![VectorNode::Picture(VectorPicture {
+                    id: "picture".to_owned(),
+                    frame: painter.paint(&layer.positions, &layer.weights, &layer.texture_weights),
+                    opacity: 1.0,
+                })],
+            };
+            if self.figure.layers.len() == 1 {
+                nodes = own;
+                continue;
+            }
+            for node in &mut own {
+                node.put_under(name);
+            }
+            nodes.push(VectorNode::Group(VectorGroup {
+                id: name.to_owned(),
+                opacity: layer.opacity,
+                clip: None,
+                nodes: own,
+            }));
+        }
+        VectorFrame {
+            size: self.camera.size(),
+            background: match self.background {
+                Background::Transparent => None,
+                Background::Colour(colour) => Some(colour),
+            },
+            nodes,
+        }
     }
 
     /// The frame at a place of the pose space.
@@ -327,20 +399,42 @@ fn camera(
     Ok(Camera::fitting(&shown, size))
 }
 
+/// The drawings as curves, if all are to be and can be drawn so, and which of them each pose shows.
+fn curves(scene: &Scene, drawings: &mut [Drawing]) -> Option<(Vec<PoseArt>, Vec<usize>)> {
+    if scene.art == ArtChoice::Pixels || drawings.iter().any(|drawing| drawing.art.is_none()) {
+        return None;
+    }
+    let curves = drawings
+        .iter_mut()
+        .zip(scene.drawn_poses())
+        .filter_map(|(drawing, drawn_on)| {
+            Some(PoseArt {
+                art: drawing.art.take()?,
+                drawn_on,
+            })
+        });
+    Some((curves.collect(), drawing_of_poses(scene)))
+}
+
 /// The drawings' textures, and which of them each pose shows.
 fn textures(scene: &Scene, drawings: &[Drawing], frame_scale: f64) -> (Vec<PoseTexture>, Vec<usize>) {
-    let drawn = scene.drawn_poses();
     let textures = drawings
         .iter()
-        .zip(&drawn)
-        .map(|(drawing, &drawn_on)| PoseTexture {
+        .zip(scene.drawn_poses())
+        .map(|(drawing, drawn_on)| PoseTexture {
             texture: Texture::new(&drawing.picture, &drawing.outline, frame_scale),
             drawn_on,
         })
         .collect();
+    (textures, drawing_of_poses(scene))
+}
+
+/// The drawing that each pose shows, by its place among those that are drawn.
+fn drawing_of_poses(scene: &Scene) -> Vec<usize> {
+    let drawn = scene.drawn_poses();
     let shown = |pose: usize| {
         let root = scene.drawing_of(pose).map(|(root, _)| root);
         drawn.iter().position(|&pose| Some(pose) == root).unwrap_or(0)
     };
-    (textures, (0..scene.poses.len()).map(shown).collect())
+    (0..scene.poses.len()).map(shown).collect()
 }

@@ -1,6 +1,6 @@
 //! One layer of a character: a shape of its own, and where it hangs.
 //!
-//! A layer is mapped and blended as if it were a scene, with the weights of the poses that have it ([`weights_among`]). One that is
+//! A layer is mapped and blended as if it were a scene, with the weights of the poses that have it ([`restricted_weights`]). One that is
 //! anchored is then moved as a whole, so that its point comes to lie on the other layer's, each where its own mesh carries it.
 //! Poses that lack a layer fade it out, by what their drawings count in the frame.
 
@@ -8,12 +8,12 @@ use super::character::blend_options;
 use super::{MappingReport, PipelineError, ShapePoint, map_drawings, read_drawings};
 use crate::blend::{BlendReport, RigidBlend};
 use crate::input::Drawing;
-use crate::math::Point;
+use crate::math::{Point, restricted_weights};
 use crate::mesh::PointLocator;
 use crate::pose::Mapping;
 use crate::render::Silhouette;
 use crate::scene::{LayerAnchor, Scene, SceneLayer};
-use crate::texture::{TextureError, texture_weights, weights_among};
+use crate::texture::{TextureError, texture_weights};
 
 /// A layer of a scene, or the whole of a scene without layers.
 pub(super) struct Part<'a> {
@@ -66,7 +66,7 @@ impl Part<'_> {
         Ok((drawings, mapping, report))
     }
 
-    fn remark(&self, note: &str) -> String {
+    pub(super) fn remark(&self, note: &str) -> String {
         match self.named {
             Some(name) => format!("layer '{name}': {note}"),
             None => note.to_owned(),
@@ -205,6 +205,16 @@ impl LayerShape {
         &self.blend
     }
 
+    /// The weights of its own poses where the scene's count with `weights`.
+    fn own_weights(&self, weights: &[f64]) -> Vec<f64> {
+        let is_present: Vec<bool> = (0..weights.len()).map(|pose| self.poses.contains(&pose)).collect();
+        let shared = restricted_weights(weights, &is_present);
+        self.poses
+            .iter()
+            .filter_map(|&pose| shared.get(pose).copied())
+            .collect()
+    }
+
     /// The layer that it hangs on.
     pub(super) fn hangs_on(&self) -> Option<usize> {
         self.tie.as_ref().map(|tie| tie.to)
@@ -212,7 +222,7 @@ impl LayerShape {
 
     /// The layer where the scene's poses count with `weights` and their drawings with `shown`, not yet hung on another one.
     pub(super) fn posed(&self, weights: &[f64], shown: &[f64], sharpness: f64) -> Result<PosedLayer, PipelineError> {
-        let own = weights_among(weights, &self.poses);
+        let own = self.own_weights(weights);
         let mut positions = Vec::new();
         let report = self.blend.blend(&own, &mut self.blend.scratch(), &mut positions)?;
         let (texture_weights, opacity) = self.seen(&own, shown, sharpness)?;

@@ -38,6 +38,24 @@ impl VectorNode {
     }
 }
 
+impl VectorNode {
+    /// Puts `name` and a slash before the ids of the node and all that is in it.
+    pub fn put_under(&mut self, name: &str) {
+        let id = match self {
+            Self::Group(group) => {
+                for node in &mut group.nodes {
+                    node.put_under(name);
+                }
+                &mut group.id
+            }
+            Self::Shape(shape) => &mut shape.id,
+            Self::Picture(picture) => &mut picture.id,
+        };
+        id.insert(0, '/');
+        id.insert_str(0, name);
+    }
+}
+
 /// Nodes that are drawn as one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VectorGroup {
