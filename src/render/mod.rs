@@ -14,6 +14,7 @@ mod frame;
 mod nearest_seed;
 mod painter;
 pub mod puppet;
+mod puppet_texture;
 pub mod raster;
 mod silhouette;
 mod texture;

@@ -3,7 +3,9 @@
 //! A [`Puppet`] does not change over an animation; a [`PuppetFrame`] is what does. Meshes enclose the drawings, so what is seen is
 //! decided by the textures' alpha, not by the mesh's edge.
 
+use super::Camera;
 use crate::math::Point;
+use crate::pose::Mapping;
 
 /// A character as textured meshes.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,4 +86,48 @@ pub struct PuppetLayerFrame {
     pub textures: Vec<f64>,
     /// Of the layer, in [0, 1].
     pub opacity: f64,
+}
+
+impl PuppetLayer {
+    /// The layer of a mapping seen by `camera`: its poses show the `textures` that `texture_of` says, one index a pose.
+    #[must_use]
+    pub fn new(
+        name: &str,
+        mapping: &Mapping,
+        textures: Vec<PuppetTexture>,
+        texture_of: &[usize],
+        camera: &Camera,
+    ) -> Self {
+        let poses = mapping.poses.names().iter().zip(mapping.poses.positions());
+        Self {
+            name: name.to_owned(),
+            triangles: mapping.poses.topology().triangles().to_vec(),
+            rings: mapping.rings.clone(),
+            poses: poses
+                .zip(texture_of)
+                .map(|((name, positions), texture)| PuppetPose {
+                    name: name.clone(),
+                    positions: positions.iter().map(|p| camera.to_pixels(*p)).collect(),
+                    texture: *texture,
+                })
+                .collect(),
+            textures,
+        }
+    }
+
+    /// What the layer looks like with its vertices at `positions`, in source units, and `weights` of its poses for textures.
+    #[must_use]
+    pub fn frame(&self, positions: &[Point], weights: &[f64], opacity: f64, camera: &Camera) -> PuppetLayerFrame {
+        let mut textures = vec![0.0; self.textures.len()];
+        for (pose, weight) in self.poses.iter().zip(weights) {
+            if let Some(sum) = textures.get_mut(pose.texture) {
+                *sum += weight;
+            }
+        }
+        PuppetLayerFrame {
+            positions: positions.iter().map(|p| camera.to_pixels(*p)).collect(),
+            textures,
+            opacity,
+        }
+    }
 }
