@@ -11,6 +11,7 @@ use crate::input::Drawing;
 use crate::math::Point;
 use crate::pose::Mapping;
 use crate::render::drawing::{CarriedDrawing, PoseArt, VectorFrame, VectorGroup, VectorNode, VectorPicture, rasterise};
+use crate::render::puppet::{Puppet, PuppetFrame, PuppetLayer, PuppetTexture};
 use crate::render::{Camera, Frame, Painter, PoseTexture, Texture};
 use crate::scene::{Anchor, Animation, ArtChoice, Background, Layout, Scene};
 use crate::texture::texture_weights;
@@ -27,6 +28,8 @@ pub struct Character {
     weights: Box<dyn WeightProvider>,
     /// What each layer is drawn with.
     art: Vec<LayerArt>,
+    /// What each layer's drawings were, for whoever draws meshes by himself.
+    sources: Vec<LayerSource>,
     camera: Camera,
     notes: Vec<String>,
     background: Background,
@@ -39,6 +42,16 @@ enum LayerArt {
     Pixels(Box<Painter>),
     /// Its drawings' curves.
     Curves(Box<CarriedDrawing>),
+}
+
+/// The drawings of a layer.
+#[derive(Debug)]
+struct LayerSource {
+    drawings: Vec<Drawing>,
+    /// The pose of each drawing.
+    drawn_on: Vec<usize>,
+    /// The drawing of each pose.
+    drawing_of: Vec<usize>,
 }
 
 /// The shapes of all layers.
@@ -104,10 +117,11 @@ impl Character {
             texture_sharpness: scene.texture_sharpness,
         };
         let camera = camera(&scene.animation, size, &figure, weights.as_ref())?;
+        let mut sources = Vec::new();
         let mut art = Vec::new();
-        for ((part, shape), drawings) in parts.iter().zip(&figure.layers).zip(&mut drawings) {
+        for ((part, shape), mut drawings) in parts.iter().zip(&figure.layers).zip(drawings) {
             let silhouette = shape.silhouette.clone();
-            art.push(match curves(part.scene, drawings) {
+            art.push(match curves(part.scene, &mut drawings) {
                 Some((curves, drawing_of)) => {
                     let (carried, remarks) =
                         CarriedDrawing::new(shape.mapping(), curves, drawing_of, silhouette, camera);
@@ -115,11 +129,16 @@ impl Character {
                     LayerArt::Curves(Box::new(carried))
                 }
                 None => {
-                    sharpen(part.scene, drawings, camera.scale())?;
-                    let (textures, texture_of) = textures(part.scene, drawings, camera.scale());
+                    sharpen(part.scene, &mut drawings, camera.scale())?;
+                    let (textures, texture_of) = textures(part.scene, &drawings, camera.scale());
                     let painter = Painter::new(shape.mapping(), textures, texture_of, silhouette, camera);
                     LayerArt::Pixels(Box::new(painter))
                 }
+            });
+            sources.push(LayerSource {
+                drawn_on: part.scene.drawn_poses(),
+                drawing_of: drawing_of_poses(part.scene),
+                drawings,
             });
         }
         Ok(Self {
@@ -127,6 +146,7 @@ impl Character {
             figure,
             weights,
             art,
+            sources,
             camera,
             notes,
             background: scene.animation.background,
@@ -244,6 +264,49 @@ impl Character {
                 Background::Colour(colour) => Some(colour),
             },
             nodes,
+        }
+    }
+
+    /// The character as textured meshes, for formats and engines that draw those.
+    #[must_use]
+    pub fn puppet(&self) -> Puppet {
+        let layer = |(shape, source): (&LayerShape, &LayerSource)| {
+            let poses = &shape.mapping().poses;
+            let texture = |(drawing, &pose): (&Drawing, &usize)| {
+                PuppetTexture::new(
+                    &poses.names()[pose],
+                    &drawing.picture,
+                    &drawing.outline,
+                    &poses.positions()[pose],
+                    self.camera.scale(),
+                )
+            };
+            let textures = source.drawings.iter().zip(&source.drawn_on).map(texture).collect();
+            PuppetLayer::new(
+                shape.name(),
+                shape.mapping(),
+                textures,
+                &source.drawing_of,
+                &self.camera,
+            )
+        };
+        Puppet {
+            size: self.camera.size(),
+            layers: self.figure.layers.iter().zip(&self.sources).map(layer).collect(),
+        }
+    }
+
+    /// What changes of `puppet`, as [`Self::puppet`] gives it, in one frame.
+    #[must_use]
+    pub fn puppet_frame(&self, puppet: &Puppet, posed: &Posed) -> PuppetFrame {
+        let layers = puppet.layers.iter().zip(&posed.layers);
+        PuppetFrame {
+            layers: layers
+                .map(|(layer, posed)| {
+                    layer.frame(&posed.positions, &posed.texture_weights, posed.opacity, &self.camera)
+                })
+                .collect(),
+            order: posed.order.clone(),
         }
     }
 
