@@ -10,10 +10,13 @@
 //! Everything left of `Character` is computed once; a frame needs two triangular solves and a pass over the pixels.
 //! A [`Character`] is immutable and can be asked from many threads at once.
 
+mod art;
+mod blending;
 mod character;
 mod deformed;
 mod drawings;
 mod error;
+mod figure;
 mod inside;
 mod landmark_path;
 mod landmarks;
@@ -26,10 +29,11 @@ mod sides;
 mod triangulation;
 mod weighting;
 
-pub use character::{Character, Posed};
+pub use character::Character;
 pub use deformed::DeformedPose;
 pub use drawings::read_drawings;
 pub use error::PipelineError;
+pub use figure::Posed;
 pub use layer::{LayerShape, PosedLayer};
 pub use layout::{automatic_places, laid_out};
 pub use mapping::{map_drawings, map_drawings_observed};

@@ -2,23 +2,16 @@
 
 use rayon::prelude::*;
 
-use super::drawings::sharpen;
-use super::layer::{self, LayerShape, Part, PosedLayer};
+use super::art::LayerArt;
+use super::figure::{self, Figure, Posed};
+use super::layer::{self, LayerShape, Part};
 use super::layout::placed;
 use super::{PipelineError, weight_provider, weighting};
-use crate::blend::{self, BlendOptions};
-use crate::input::Drawing;
-use crate::math::Point;
-use crate::pose::Mapping;
-use crate::render::drawing::{CarriedDrawing, PoseArt, VectorFrame, VectorGroup, VectorNode, VectorPicture, rasterise};
-use crate::render::puppet::{Puppet, PuppetFrame, PuppetLayer, PuppetTexture};
-use crate::render::{Camera, Frame, Painter, PoseTexture, Texture};
-use crate::scene::{Anchor, Animation, ArtChoice, Background, Layout, Scene};
-use crate::texture::texture_weights;
+use crate::render::drawing::{VectorFrame, VectorGroup, VectorNode, rasterise};
+use crate::render::puppet::{Puppet, PuppetFrame};
+use crate::render::{Camera, Frame, Painter};
+use crate::scene::{Animation, Background, Layout, Scene};
 use crate::weights::WeightProvider;
-
-/// How many places of the animation the camera looks at before it chooses its distance.
-const CAMERA_PLACES: usize = 48;
 
 /// A scene's character with everything that is computed once: mappings, factorised blends, weights, textures, camera.
 #[derive(Debug)]
@@ -28,56 +21,9 @@ pub struct Character {
     weights: Box<dyn WeightProvider>,
     /// What each layer is drawn with.
     art: Vec<LayerArt>,
-    /// What each layer's drawings were, for whoever draws meshes by himself.
-    sources: Vec<LayerSource>,
     camera: Camera,
     notes: Vec<String>,
     background: Background,
-}
-
-/// What a layer is drawn with.
-#[derive(Debug)]
-enum LayerArt {
-    /// Textures of its drawings.
-    Pixels(Box<Painter>),
-    /// Its drawings' curves.
-    Curves(Box<CarriedDrawing>),
-}
-
-/// The drawings of a layer.
-#[derive(Debug)]
-struct LayerSource {
-    drawings: Vec<Drawing>,
-    /// The pose of each drawing.
-    drawn_on: Vec<usize>,
-    /// The drawing of each pose.
-    drawing_of: Vec<usize>,
-}
-
-/// The shapes of all layers.
-#[derive(Debug)]
-struct Figure {
-    layers: Vec<LayerShape>,
-    /// Per pose of the scene, the layers from back to front.
-    draw_orders: Vec<Vec<usize>>,
-    texture_sharpness: f64,
-}
-
-/// A character in one pose: the shapes of a frame, before it is drawn.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Posed {
-    /// One a layer of the scene; a scene without layers has one.
-    pub layers: Vec<PosedLayer>,
-    /// The layers from back to front.
-    pub order: Vec<usize>,
-}
-
-impl Posed {
-    /// Inverted triangles, over all layers.
-    #[must_use]
-    pub fn flipped(&self) -> usize {
-        self.layers.iter().map(|layer| layer.report.flipped).sum()
-    }
 }
 
 impl Character {
@@ -111,42 +57,17 @@ impl Character {
             Some(weights) => weights,
             None => weight_provider(scene, None)?,
         };
-        let figure = Figure {
-            draw_orders: draw_orders(scene, shapes.len()),
-            layers: shapes,
-            texture_sharpness: scene.texture_sharpness,
-        };
-        let camera = camera(&scene.animation, size, &figure, weights.as_ref())?;
-        let mut sources = Vec::new();
+        let figure = Figure::new(scene, shapes);
+        let camera = figure::camera(&scene.animation, size, &figure, weights.as_ref())?;
         let mut art = Vec::new();
-        for ((part, shape), mut drawings) in parts.iter().zip(&figure.layers).zip(drawings) {
-            let silhouette = shape.silhouette.clone();
-            art.push(match curves(part.scene, &mut drawings) {
-                Some((curves, drawing_of)) => {
-                    let (carried, remarks) =
-                        CarriedDrawing::new(shape.mapping(), curves, drawing_of, silhouette, camera);
-                    notes.extend(remarks.iter().map(|note| part.remark(note)));
-                    LayerArt::Curves(Box::new(carried))
-                }
-                None => {
-                    sharpen(part.scene, &mut drawings, camera.scale())?;
-                    let (textures, texture_of) = textures(part.scene, &drawings, camera.scale());
-                    let painter = Painter::new(shape.mapping(), textures, texture_of, silhouette, camera);
-                    LayerArt::Pixels(Box::new(painter))
-                }
-            });
-            sources.push(LayerSource {
-                drawn_on: part.scene.drawn_poses(),
-                drawing_of: drawing_of_poses(part.scene),
-                drawings,
-            });
+        for ((part, shape), drawings) in parts.iter().zip(&figure.layers).zip(drawings) {
+            art.push(LayerArt::new(part, shape, drawings, camera, &mut notes)?);
         }
         Ok(Self {
             names: scene.names(),
             figure,
             weights,
             art,
-            sources,
             camera,
             notes,
             background: scene.animation.background,
@@ -194,20 +115,17 @@ impl Character {
     /// Paints a frame.
     #[must_use]
     pub fn paint(&self, posed: &Posed) -> Frame {
-        let has_curves = self.art.iter().any(|art| matches!(art, LayerArt::Curves(_)));
-        if has_curves {
+        let painters: Option<Vec<&Painter>> = self.art.iter().map(LayerArt::painter).collect();
+        let Some(painters) = painters else {
             return rasterise(&self.draw(posed), 1);
-        }
+        };
         let mut frame: Option<Frame> = None;
         for &k in &posed.order {
             let layer = &posed.layers[k];
-            let LayerArt::Pixels(painter) = &self.art[k] else {
-                continue;
-            };
             if layer.opacity <= 0.0 {
                 continue;
             }
-            let own = painter.paint(&layer.positions, &layer.weights, &layer.texture_weights);
+            let own = painters[k].paint(&layer.positions, &layer.weights, &layer.texture_weights);
             match &mut frame {
                 None if layer.opacity == 1.0 => frame = Some(own),
                 before => before
@@ -235,14 +153,7 @@ impl Character {
         let mut nodes = Vec::new();
         for &k in &posed.order {
             let (layer, name) = (&posed.layers[k], self.figure.layers[k].name());
-            let mut own = match &self.art[k] {
-                LayerArt::Curves(drawing) => drawing.frame(&layer.positions, &layer.weights, &layer.texture_weights),
-                LayerArt::Pixels(painter) => vec![VectorNode::Picture(VectorPicture {
-                    id: "picture".to_owned(),
-                    frame: painter.paint(&layer.positions, &layer.weights, &layer.texture_weights),
-                    opacity: 1.0,
-                })],
-            };
+            let mut own = self.art[k].draw(layer);
             if self.figure.layers.len() == 1 {
                 nodes = own;
                 continue;
@@ -270,29 +181,11 @@ impl Character {
     /// The character as textured meshes, for formats and engines that draw those.
     #[must_use]
     pub fn puppet(&self) -> Puppet {
-        let layer = |(shape, source): (&LayerShape, &LayerSource)| {
-            let poses = &shape.mapping().poses;
-            let texture = |(drawing, &pose): (&Drawing, &usize)| {
-                PuppetTexture::new(
-                    &poses.names()[pose],
-                    &drawing.picture,
-                    &drawing.outline,
-                    &poses.positions()[pose],
-                    self.camera.scale(),
-                )
-            };
-            let textures = source.drawings.iter().zip(&source.drawn_on).map(texture).collect();
-            PuppetLayer::new(
-                shape.name(),
-                shape.mapping(),
-                textures,
-                &source.drawing_of,
-                &self.camera,
-            )
-        };
         Puppet {
             size: self.camera.size(),
-            layers: self.figure.layers.iter().zip(&self.sources).map(layer).collect(),
+            layers: (self.figure.layers.iter().zip(&self.art))
+                .map(|(shape, art)| art.puppet(shape, &self.camera))
+                .collect(),
         }
     }
 
@@ -341,163 +234,4 @@ impl Character {
     pub fn posed(&self, animation: &Animation, index: usize) -> Result<Posed, PipelineError> {
         self.posed_at(&animation.at(animation.time_of_frame(index)))
     }
-}
-
-impl Figure {
-    /// The shapes for weights that sum to 1.
-    fn posed(&self, weights: &[f64]) -> Result<Posed, PipelineError> {
-        let shown = texture_weights(weights, self.texture_sharpness)?;
-        let mut layers: Vec<PosedLayer> = (self.layers.iter())
-            .map(|shape| shape.posed(weights, &shown, self.texture_sharpness))
-            .collect::<Result<_, _>>()?;
-        // What a layer hangs on is put in its place first; a validated scene has no circle.
-        let mut is_placed: Vec<bool> = self.layers.iter().map(|shape| shape.hangs_on().is_none()).collect();
-        for _ in 0..self.layers.len() {
-            for (k, shape) in self.layers.iter().enumerate() {
-                let Some(to) = shape.hangs_on().filter(|&to| !is_placed[k] && is_placed[to]) else {
-                    continue;
-                };
-                let gap = shape.gap(&layers[k], &layers[to]);
-                for position in &mut layers[k].positions {
-                    *position += gap;
-                }
-                is_placed[k] = true;
-            }
-        }
-        Ok(Posed {
-            layers,
-            order: self.draw_orders[strongest(&shown)].clone(),
-        })
-    }
-}
-
-/// The pose whose drawing is seen most; of equal ones the first.
-fn strongest(shown: &[f64]) -> usize {
-    (0..shown.len()).fold(0, |best, pose| if shown[pose] > shown[best] { pose } else { best })
-}
-
-fn draw_orders(scene: &Scene, layer_count: usize) -> Vec<Vec<usize>> {
-    if scene.layers.is_empty() {
-        return vec![(0..layer_count).collect(); scene.poses.len()];
-    }
-    scene.poses.iter().map(|pose| pose.draw_order.clone()).collect()
-}
-
-pub(super) fn blend_options(scene: &Scene, mapping: &Mapping) -> BlendOptions {
-    let vertex = |landmark| nearest_vertex(scene, mapping, landmark);
-    let settings = &scene.blend;
-    BlendOptions {
-        reference: settings.reference,
-        stretch: settings.stretch,
-        anchor: match &settings.anchor {
-            Anchor::Centroid => blend::Anchor::Centroid,
-            Anchor::Landmark(landmark) => blend::Anchor::Vertex(vertex(*landmark)),
-            Anchor::Soft(anchors) => {
-                let soft = anchors.iter().map(|anchor| blend::SoftAnchor {
-                    vertex: vertex(anchor.landmark),
-                    stiffness: anchor.stiffness,
-                });
-                blend::Anchor::Soft(soft.collect())
-            }
-        },
-        turns: scene.poses.iter().map(|pose| pose.turns).collect(),
-        regions: settings
-            .regions
-            .iter()
-            .map(|region| blend::Region {
-                vertex: vertex(region.landmark),
-                radius: region.radius,
-                stiffness: region.stiffness,
-                stretch_limit: region.stretch_limit,
-            })
-            .collect(),
-        guard: settings.guard,
-    }
-}
-
-/// The vertex nearest to a landmark, over all poses that have it.
-fn nearest_vertex(scene: &Scene, mapping: &Mapping, landmark: usize) -> usize {
-    let places = &scene.landmarks[landmark].at;
-    let distance = |vertex: usize| -> f64 {
-        places
-            .iter()
-            .zip(mapping.poses.positions())
-            .filter_map(|(place, positions)| place.map(|place| (positions[vertex] - place).norm()))
-            .sum()
-    };
-    (0..mapping.poses.topology().vertex_count())
-        .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
-        .unwrap_or(0)
-}
-
-fn camera(
-    animation: &Animation,
-    size: [usize; 2],
-    figure: &Figure,
-    weights: &dyn WeightProvider,
-) -> Result<Camera, PipelineError> {
-    let mut shown: Vec<Point> = (figure.layers.iter())
-        .flat_map(|layer| &layer.mapping().outlines)
-        .flat_map(|outline| outline.outer().points().iter().copied())
-        .collect();
-    let (start, count) = (animation.time_of_frame(0), CAMERA_PLACES);
-    let mut at_place = Vec::new();
-    for k in 0..count {
-        let time = start + animation.duration() * k as f64 / count as f64;
-        weights
-            .weights(&animation.at(time), &mut at_place)
-            .map_err(PipelineError::Weights)?;
-        for (shape, posed) in figure.layers.iter().zip(figure.posed(&at_place)?.layers) {
-            if posed.opacity > 0.0 {
-                shown.extend(
-                    shape
-                        .silhouette
-                        .at(&posed.positions, &posed.weights)
-                        .into_iter()
-                        .flatten(),
-                );
-            }
-        }
-    }
-    Ok(Camera::fitting(&shown, size))
-}
-
-/// The drawings as curves, if all are to be and can be drawn so, and which of them each pose shows.
-fn curves(scene: &Scene, drawings: &mut [Drawing]) -> Option<(Vec<PoseArt>, Vec<usize>)> {
-    if scene.art == ArtChoice::Pixels || drawings.iter().any(|drawing| drawing.art.is_none()) {
-        return None;
-    }
-    let curves = drawings
-        .iter_mut()
-        .zip(scene.drawn_poses())
-        .filter_map(|(drawing, drawn_on)| {
-            Some(PoseArt {
-                art: drawing.art.take()?,
-                drawn_on,
-            })
-        });
-    Some((curves.collect(), drawing_of_poses(scene)))
-}
-
-/// The drawings' textures, and which of them each pose shows.
-fn textures(scene: &Scene, drawings: &[Drawing], frame_scale: f64) -> (Vec<PoseTexture>, Vec<usize>) {
-    let textures = drawings
-        .iter()
-        .zip(scene.drawn_poses())
-        .map(|(drawing, drawn_on)| PoseTexture {
-            texture: Texture::new(&drawing.picture, &drawing.outline, frame_scale),
-            drawn_on,
-        })
-        .collect();
-    (textures, drawing_of_poses(scene))
-}
-
-/// The drawing that each pose shows, by its place among those that are drawn.
-fn drawing_of_poses(scene: &Scene) -> Vec<usize> {
-    let drawn = scene.drawn_poses();
-    let shown = |pose: usize| {
-        let root = scene.drawing_of(pose).map(|(root, _)| root);
-        drawn.iter().position(|&pose| Some(pose) == root).unwrap_or(0)
-    };
-    (0..scene.poses.len()).map(shown).collect()
 }

@@ -4,7 +4,7 @@
 //! anchored is then moved as a whole, so that its point comes to lie on the other layer's, each where its own mesh carries it.
 //! Poses that lack a layer fade it out, by what their drawings count in the frame.
 
-use super::character::blend_options;
+use super::blending::blend_options;
 use super::{MappingReport, PipelineError, ShapePoint, map_drawings, read_drawings};
 use crate::blend::{BlendReport, RigidBlend};
 use crate::input::Drawing;

@@ -14,7 +14,7 @@
 //!
 //! Limits: a search, not a proof: between the first step's places a narrow valley may be missed.
 
-use super::character::blend_options;
+use super::blending::blend_options;
 use super::layout::placed;
 use super::{PipelineError, map_drawings, read_drawings, weight_provider};
 use crate::blend::{BlendScratch, RigidBlend};

@@ -1,0 +1,119 @@
+//! What a layer of a character is drawn with: textures of its drawings, or their curves.
+
+use super::PipelineError;
+use super::drawings::sharpen;
+use super::layer::{LayerShape, Part, PosedLayer};
+use crate::input::Drawing;
+use crate::render::drawing::{CarriedDrawing, PoseArt, VectorNode, VectorPicture};
+use crate::render::puppet::{PuppetLayer, PuppetTexture};
+use crate::render::{Camera, Painter, PoseTexture, Texture};
+use crate::scene::{ArtChoice, Scene};
+
+/// The drawings of a layer, ready to be drawn on its mesh.
+#[derive(Debug)]
+pub(super) struct LayerArt {
+    style: Style,
+    /// The drawings, for whoever draws meshes himself.
+    drawings: Vec<Drawing>,
+    /// The pose of each drawing.
+    drawn_on: Vec<usize>,
+    /// The drawing of each pose.
+    drawing_of: Vec<usize>,
+}
+
+#[derive(Debug)]
+enum Style {
+    Pixels(Box<Painter>),
+    Curves(Box<CarriedDrawing>),
+}
+
+impl LayerArt {
+    /// The art of one layer; `notes` are added to.
+    pub(super) fn new(
+        part: &Part<'_>,
+        shape: &LayerShape,
+        mut drawings: Vec<Drawing>,
+        camera: Camera,
+        notes: &mut Vec<String>,
+    ) -> Result<Self, PipelineError> {
+        let drawn_on = part.scene.drawn_poses();
+        let drawing_of = drawing_of_poses(part.scene);
+        let (mapping, silhouette) = (shape.mapping(), shape.silhouette.clone());
+        let style = match curves(part.scene, &mut drawings, &drawn_on) {
+            Some(curves) => {
+                let (carried, remarks) = CarriedDrawing::new(mapping, curves, drawing_of.clone(), silhouette, camera);
+                notes.extend(remarks.iter().map(|note| part.remark(note)));
+                Style::Curves(Box::new(carried))
+            }
+            None => {
+                sharpen(part.scene, &mut drawings, camera.scale())?;
+                let texture = |(drawing, &drawn_on): (&Drawing, &usize)| PoseTexture {
+                    texture: Texture::new(&drawing.picture, &drawing.outline, camera.scale()),
+                    drawn_on,
+                };
+                let textures = drawings.iter().zip(&drawn_on).map(texture).collect();
+                let painter = Painter::new(mapping, textures, drawing_of.clone(), silhouette, camera);
+                Style::Pixels(Box::new(painter))
+            }
+        };
+        Ok(Self {
+            style,
+            drawings,
+            drawn_on,
+            drawing_of,
+        })
+    }
+
+    /// What paints the layer, if that is pixels.
+    pub(super) fn painter(&self) -> Option<&Painter> {
+        match &self.style {
+            Style::Pixels(painter) => Some(painter),
+            Style::Curves(_) => None,
+        }
+    }
+
+    /// The layer in one frame, from back to front, in pixels of the frame.
+    pub(super) fn draw(&self, posed: &PosedLayer) -> Vec<VectorNode> {
+        match &self.style {
+            Style::Curves(drawing) => drawing.frame(&posed.positions, &posed.weights, &posed.texture_weights),
+            Style::Pixels(painter) => vec![VectorNode::Picture(VectorPicture {
+                id: "picture".to_owned(),
+                frame: painter.paint(&posed.positions, &posed.weights, &posed.texture_weights),
+                opacity: 1.0,
+            })],
+        }
+    }
+
+    /// The layer as a textured mesh.
+    pub(super) fn puppet(&self, shape: &LayerShape, camera: &Camera) -> PuppetLayer {
+        let poses = &shape.mapping().poses;
+        let texture = |(drawing, &pose): (&Drawing, &usize)| {
+            let (name, positions) = (&poses.names()[pose], &poses.positions()[pose]);
+            PuppetTexture::new(name, &drawing.picture, &drawing.outline, positions, camera.scale())
+        };
+        let textures = self.drawings.iter().zip(&self.drawn_on).map(texture).collect();
+        PuppetLayer::new(shape.name(), shape.mapping(), textures, &self.drawing_of, camera)
+    }
+}
+
+/// The drawings as curves, if all are to be and can be drawn so.
+fn curves(scene: &Scene, drawings: &mut [Drawing], drawn_on: &[usize]) -> Option<Vec<PoseArt>> {
+    if scene.art == ArtChoice::Pixels || drawings.iter().any(|drawing| drawing.art.is_none()) {
+        return None;
+    }
+    let take = |(drawing, &drawn_on): (&mut Drawing, &usize)| {
+        let art = drawing.art.take()?;
+        Some(PoseArt { art, drawn_on })
+    };
+    drawings.iter_mut().zip(drawn_on).map(take).collect()
+}
+
+/// The drawing that each pose shows, by its place among those that are drawn.
+fn drawing_of_poses(scene: &Scene) -> Vec<usize> {
+    let drawn = scene.drawn_poses();
+    let shown = |pose: usize| {
+        let root = scene.drawing_of(pose).map(|(root, _)| root);
+        drawn.iter().position(|&pose| Some(pose) == root).unwrap_or(0)
+    };
+    (0..scene.poses.len()).map(shown).collect()
+}
