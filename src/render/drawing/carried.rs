@@ -117,8 +117,7 @@ impl CarriedDrawing {
             .map(|&pose| mapping.poses.names()[pose].as_str())
             .collect();
         let mut notes = Vec::new();
-        let matched = match_elements(&art, &names, &mut notes);
-        let sequences = sequences(&art, &matched);
+        let (matched, sequences) = match_elements(&art, &names, &mut notes);
         let nodes: Vec<Node> = matched
             .into_iter()
             .map(|matched| {
@@ -271,23 +270,9 @@ impl Node {
     }
 }
 
-/// Which elements become one node, in the order in which they are first met.
-fn match_elements<'a>(art: &[&'a Art], names: &[&str], notes: &mut Vec<String>) -> Vec<Matched<'a>> {
-    let mut of_id: BTreeMap<&str, usize> = BTreeMap::new();
-    let mut groups: Vec<Vec<(usize, &'a ArtElement)>> = Vec::new();
-    for (drawing, art) in art.iter().enumerate() {
-        for element in &art.elements {
-            match element.id.as_deref().and_then(|id| of_id.get(id)) {
-                Some(&group) => groups[group].push((drawing, element)),
-                None => {
-                    if let Some(id) = &element.id {
-                        of_id.insert(id, groups.len());
-                    }
-                    groups.push(vec![(drawing, element)]);
-                }
-            }
-        }
-    }
+/// Which elements become one node, in the order in which they are first met, and the nodes of each drawing from back to front.
+fn match_elements<'a>(art: &[&'a Art], names: &[&str], notes: &mut Vec<String>) -> (Vec<Matched<'a>>, Vec<Vec<usize>>) {
+    let groups = groups_by_id(art);
     let mut taken = BTreeSet::new();
     let mut unique = |wanted: String| {
         let mut id = wanted.clone();
@@ -298,56 +283,67 @@ fn match_elements<'a>(art: &[&'a Art], names: &[&str], notes: &mut Vec<String>) 
         }
         id
     };
-    let mut matched = Vec::new();
+    let mut matched: Vec<Matched> = Vec::new();
+    // Which node each element of each drawing is.
+    let mut node_of: Vec<Vec<usize>> = art.iter().map(|art| vec![0; art.elements.len()]).collect();
     let mut nameless = vec![0; art.len()];
     for group in groups {
-        let elements: Vec<&ArtElement> = group.iter().map(|(_, element)| *element).collect();
-        let (first, id) = (group[0].0, group[0].1.id.as_deref());
-        let id = match id {
-            Some(id) => id.to_owned(),
-            None => {
-                nameless[first] += 1;
-                format!("{}-{}", names[first], nameless[first])
+        let elements: Vec<&ArtElement> = group.iter().map(|&(drawing, k)| &art[drawing].elements[k]).collect();
+        let first = group[0].0;
+        let id = elements[0].id.clone().unwrap_or_else(|| {
+            nameless[first] += 1;
+            format!("{}-{}", names[first], nameless[first])
+        });
+        let styles = Styles::new(&elements);
+        if let Err(reason) = &styles {
+            notes.push(format!(
+                "the elements '{id}' are cross-faded, not morphed, because {reason}"
+            ));
+        }
+        let mut add = |id: String, members: &[(usize, usize)], elements: Vec<&'a ArtElement>, styles: Styles| {
+            for &(drawing, k) in members {
+                node_of[drawing][k] = matched.len();
             }
-        };
-        match Styles::new(&elements) {
-            Ok(styles) => matched.push(Matched {
+            matched.push(Matched {
                 id: unique(id),
-                drawings: group.iter().map(|(drawing, _)| *drawing).collect(),
+                drawings: members.iter().map(|(drawing, _)| *drawing).collect(),
                 elements,
                 styles,
-            }),
-            Err(reason) => {
-                notes.push(format!(
-                    "the elements '{id}' are cross-faded, not morphed, because {reason}"
-                ));
-                for (drawing, element) in group {
+            });
+        };
+        match styles {
+            Ok(styles) => add(id, &group, elements, styles),
+            Err(_) => {
+                for (&member, element) in group.iter().zip(elements) {
                     // One element agrees with itself.
                     if let Ok(styles) = Styles::new(&[element]) {
-                        matched.push(Matched {
-                            id: unique(format!("{id}@{}", names[drawing])),
-                            drawings: vec![drawing],
-                            elements: vec![element],
-                            styles,
-                        });
+                        add(format!("{id}@{}", names[member.0]), &[member], vec![element], styles);
                     }
                 }
             }
         }
     }
-    matched
+    (matched, node_of)
 }
 
-/// The nodes of each drawing, from back to front.
-fn sequences(art: &[&Art], matched: &[Matched]) -> Vec<Vec<usize>> {
-    let mut node_of: BTreeMap<*const ArtElement, usize> = BTreeMap::new();
-    for (node, matched) in matched.iter().enumerate() {
-        for element in &matched.elements {
-            node_of.insert(std::ptr::from_ref(*element), node);
+/// The elements that have an id in common, and every other by itself: which of which drawing.
+fn groups_by_id(art: &[&Art]) -> Vec<Vec<(usize, usize)>> {
+    let mut of_id: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut groups: Vec<Vec<(usize, usize)>> = Vec::new();
+    for (drawing, art) in art.iter().enumerate() {
+        for (k, element) in art.elements.iter().enumerate() {
+            let known = element.id.as_deref().and_then(|id| of_id.get(id)).copied();
+            // An id that a drawing has twice counts once.
+            match known.filter(|&group| groups[group].iter().all(|(other, _)| *other != drawing)) {
+                Some(group) => groups[group].push((drawing, k)),
+                None => {
+                    if let (Some(id), None) = (&element.id, known) {
+                        of_id.insert(id, groups.len());
+                    }
+                    groups.push(vec![(drawing, k)]);
+                }
+            }
         }
     }
-    let node = |element: &ArtElement| node_of.get(&std::ptr::from_ref(element)).copied();
-    art.iter()
-        .map(|art| art.elements.iter().filter_map(node).collect())
-        .collect()
+    groups
 }

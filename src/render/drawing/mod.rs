@@ -4,6 +4,7 @@
 //! the same nodes with the same ids and equally many curves, whatever is seen of them: only numbers change, and the order of
 //! siblings where poses draw in different orders. So a format with keys can follow a node through the frames by its id.
 
+mod alignment;
 mod binding;
 mod carried;
 mod correspondence;
@@ -22,3 +23,6 @@ pub use raster::rasterise;
 pub use crate::input::{
     Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke, Subpath,
 };
+
+#[cfg(test)]
+mod tests;
