@@ -7,7 +7,7 @@ use crate::blend::{self, BlendOptions, BlendReport, RigidBlend};
 use crate::input::Drawing;
 use crate::math::Point;
 use crate::pose::Mapping;
-use crate::render::{Camera, Frame, Painter, PoseTexture, Silhouette, Texture};
+use crate::render::{Camera, Frame, PaintOptions, Painter, PoseTexture, Silhouette, Texture};
 use crate::scene::{Anchor, Animation, Background, Layout, Scene};
 use crate::texture::texture_weights;
 use crate::weights::WeightProvider;
@@ -62,7 +62,14 @@ impl Character {
         sharpen(scene, &mut drawings, camera.scale())?;
         let (textures, texture_of) = textures(scene, &drawings, camera.scale());
         Ok(Self {
-            painter: Painter::new(&mapping, textures, texture_of, silhouette, camera),
+            painter: Painter::new(
+                &mapping,
+                textures,
+                texture_of,
+                silhouette,
+                camera,
+                PaintOptions::default(),
+            ),
             mapping,
             notes,
             blend,
