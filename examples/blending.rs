@@ -19,7 +19,7 @@ use inbetween::input::Drawing;
 use inbetween::math::{Point, point};
 use inbetween::pipeline::{map_drawings, read_drawings};
 use inbetween::pose::{HandleDeformation, Mapping};
-use inbetween::render::{Camera, Frame, Painter, PoseTexture, Silhouette, Texture};
+use inbetween::render::{Camera, Frame, PaintOptions, Painter, PoseTexture, Silhouette, Texture};
 use inbetween::scene::Scene;
 use inbetween::texture::texture_weights;
 use tiny_skia::Color;
@@ -269,7 +269,14 @@ impl Cast {
             drawn.iter().position(|pose| Some(*pose) == root).unwrap_or(0)
         };
         let texture_of = (0..self.scene.poses.len()).map(texture_of).collect();
-        Painter::new(&self.mapping, textures, texture_of, self.silhouette.clone(), camera)
+        Painter::new(
+            &self.mapping,
+            textures,
+            texture_of,
+            self.silhouette.clone(),
+            camera,
+            PaintOptions::default(),
+        )
     }
 
     fn paint(&self, painter: &Painter, shape: &Shape) -> Result<Frame, Box<dyn Error>> {

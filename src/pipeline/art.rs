@@ -6,8 +6,8 @@ use super::layer::{LayerShape, Part, PosedLayer};
 use crate::input::Drawing;
 use crate::render::drawing::{CarriedDrawing, PoseArt, VectorNode, VectorPicture};
 use crate::render::puppet::{PuppetLayer, PuppetTexture};
-use crate::render::{Camera, Painter, PoseTexture, Texture};
-use crate::scene::{ArtChoice, Scene};
+use crate::render::{Camera, ColourBlend, PaintOptions, Painter, PoseTexture, Texture};
+use crate::scene::{self, ArtChoice, Scene};
 
 /// The drawings of a layer, ready to be drawn on its mesh.
 #[derive(Debug)]
@@ -34,6 +34,7 @@ impl LayerArt {
         shape: &LayerShape,
         mut drawings: Vec<Drawing>,
         camera: Camera,
+        samples: usize,
         notes: &mut Vec<String>,
     ) -> Result<Self, PipelineError> {
         let drawn_on = part.scene.drawn_poses();
@@ -46,13 +47,21 @@ impl LayerArt {
                 Style::Curves(Box::new(carried))
             }
             None => {
-                sharpen(part.scene, &mut drawings, camera.scale())?;
+                let scale = camera.scale() * samples as f64;
+                sharpen(part.scene, &mut drawings, scale)?;
                 let texture = |(drawing, &drawn_on): (&Drawing, &usize)| PoseTexture {
-                    texture: Texture::new(&drawing.picture, &drawing.outline, camera.scale()),
+                    texture: Texture::new(&drawing.picture, &drawing.outline, scale),
                     drawn_on,
                 };
                 let textures = drawings.iter().zip(&drawn_on).map(texture).collect();
-                let painter = Painter::new(mapping, textures, drawing_of.clone(), silhouette, camera);
+                let options = PaintOptions {
+                    blending: match part.scene.colour_blend {
+                        scene::ColourBlend::Plain => ColourBlend::Plain,
+                        scene::ColourBlend::Linear => ColourBlend::Linear,
+                    },
+                    supersample: samples,
+                };
+                let painter = Painter::new(mapping, textures, drawing_of.clone(), silhouette, camera, options);
                 Style::Pixels(Box::new(painter))
             }
         };

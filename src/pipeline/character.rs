@@ -9,7 +9,7 @@ use super::layout::placed;
 use super::{PipelineError, weight_provider, weighting};
 use crate::render::drawing::{VectorFrame, VectorGroup, VectorNode, rasterise};
 use crate::render::puppet::{Puppet, PuppetFrame};
-use crate::render::{Camera, Frame, Painter};
+use crate::render::{Camera, Frame, PaintOptions, Painter};
 use crate::scene::{Animation, Background, Layout, Scene};
 use crate::weights::WeightProvider;
 
@@ -22,6 +22,8 @@ pub struct Character {
     /// What each layer is drawn with.
     art: Vec<LayerArt>,
     camera: Camera,
+    /// Along a pixel's side.
+    samples: usize,
     notes: Vec<String>,
     background: Background,
 }
@@ -35,6 +37,15 @@ impl Character {
     /// # Errors
     /// [`PipelineError`] from any stage.
     pub fn new(scene: &Scene, size: [usize; 2]) -> Result<Self, PipelineError> {
+        Self::supersampled(scene, size, 1)
+    }
+
+    /// As [`Self::new`], with `samples` x `samples` samples a pixel in its frames, from 1 to 4.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn supersampled(scene: &Scene, size: [usize; 2], samples: usize) -> Result<Self, PipelineError> {
+        let samples = samples.clamp(1, PaintOptions::MOST_SAMPLES);
         // The cheap refusals first.
         let mut weights = match scene.layout {
             Layout::Given => Some(weight_provider(scene, None)?),
@@ -61,7 +72,7 @@ impl Character {
         let camera = figure::camera(&scene.animation, size, &figure, weights.as_ref())?;
         let mut art = Vec::new();
         for ((part, shape), drawings) in parts.iter().zip(&figure.layers).zip(drawings) {
-            art.push(LayerArt::new(part, shape, drawings, camera, &mut notes)?);
+            art.push(LayerArt::new(part, shape, drawings, camera, samples, &mut notes)?);
         }
         Ok(Self {
             names: scene.names(),
@@ -69,6 +80,7 @@ impl Character {
             weights,
             art,
             camera,
+            samples,
             notes,
             background: scene.animation.background,
         })
@@ -117,7 +129,7 @@ impl Character {
     pub fn paint(&self, posed: &Posed) -> Frame {
         let painters: Option<Vec<&Painter>> = self.art.iter().map(LayerArt::painter).collect();
         let Some(painters) = painters else {
-            return rasterise(&self.draw(posed), 1);
+            return rasterise(&self.draw(posed), self.samples);
         };
         let mut frame: Option<Frame> = None;
         for &k in &posed.order {

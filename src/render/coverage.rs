@@ -9,6 +9,8 @@
 //! Cost: O(#edges + #pixels touched + #pixels). Limits: a polygon that overlaps a part of itself of the *other*
 //! orientation is clear there.
 
+use std::ops::Range;
+
 use crate::math::Point;
 
 /// The covered area of each pixel of a grid.
@@ -24,24 +26,13 @@ impl Coverage {
     /// square from (i, j) to (i+1, j+1). Points must be finite.
     #[must_use]
     pub fn of<'a>(polygons: impl IntoIterator<Item = &'a [Point]>, width: usize, height: usize) -> Self {
-        // One column more, for what continues to the right of the grid.
-        let mut differences = Differences {
-            stride: width + 1,
-            height,
-            values: vec![0.0; (width + 1) * height],
-        };
+        let mut rows = CoverageRows::new(width, 0..height);
         for polygon in polygons {
-            for (k, a) in polygon.iter().enumerate() {
-                differences.add_edge(*a, polygon[(k + 1) % polygon.len()]);
-            }
+            edges(polygon).for_each(|[a, b]| rows.add_edge(a, b));
         }
-        let mut areas = Vec::with_capacity(width * height);
-        for row in differences.values.chunks_exact(width + 1) {
-            let mut sum = 0.0f32;
-            areas.extend(row[..width].iter().map(|d| {
-                sum += d;
-                sum.abs().min(1.0)
-            }));
+        let mut areas = vec![0.0; width * height];
+        for (row, areas) in areas.chunks_exact_mut(width.max(1)).enumerate() {
+            rows.for_each_run(row, |columns, area| areas[columns].fill(area));
         }
         Self { width, height, areas }
     }
@@ -65,22 +56,73 @@ impl Coverage {
     }
 }
 
-struct Differences {
-    stride: usize,
-    height: usize,
-    values: Vec<f32>,
+/// The edges of a closed polygon, in its order.
+pub(super) fn edges(polygon: &[Point]) -> impl Iterator<Item = [Point; 2]> + '_ {
+    let next = polygon.iter().cycle().skip(1);
+    polygon.iter().zip(next).map(|(a, b)| [*a, *b])
 }
 
-impl Differences {
-    fn add_edge(&mut self, a: Point, b: Point) {
+/// The coverage of some rows of a grid, while edges are added to it and after.
+pub(super) struct CoverageRows {
+    /// One column more than the grid, for what continues to its right.
+    stride: usize,
+    top: usize,
+    bottom: usize,
+    differences: Vec<f32>,
+    /// A bit for each difference that is not 0, rows beginning with a new word: most are.
+    touched: Vec<u64>,
+}
+
+impl CoverageRows {
+    /// Rows of a grid `width` pixels wide that nothing covers.
+    pub(super) fn new(width: usize, rows: Range<usize>) -> Self {
+        let stride = width + 1;
+        Self {
+            stride,
+            top: rows.start,
+            bottom: rows.end,
+            differences: vec![0.0; stride * rows.len()],
+            touched: vec![0; stride.div_ceil(64) * rows.len()],
+        }
+    }
+
+    /// Calls `each` with columns next to each other that are covered alike, from left to right through all of row `row`,
+    /// counted from the first of these rows.
+    pub(super) fn for_each_run(&self, row: usize, mut each: impl FnMut(Range<usize>, f32)) {
+        let width = self.stride - 1;
+        let differences = &self.differences[row * self.stride..][..width];
+        let words = self.stride.div_ceil(64);
+        let (mut start, mut sum) = (0, 0.0f32);
+        for (word, bits) in self.touched[row * words..][..words].iter().enumerate() {
+            let mut bits = *bits;
+            while bits != 0 {
+                let column = word * 64 + bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                if column >= width {
+                    break;
+                }
+                if column > start {
+                    each(start..column, sum.abs().min(1.0));
+                }
+                start = column;
+                sum += differences[column];
+            }
+        }
+        if start < width {
+            each(start..width, sum.abs().min(1.0));
+        }
+    }
+
+    /// Adds the part of an edge of a polygon that lies in these rows.
+    pub(super) fn add_edge(&mut self, a: Point, b: Point) {
         if a.y == b.y {
             return;
         }
         // Positive polygons (x to y) run upwards, to lower y, on their left side.
         let (top, bottom, sign) = if a.y > b.y { (b, a, 1.0) } else { (a, b, -1.0) };
         let slope = (bottom.x - top.x) / (bottom.y - top.y);
-        let first = top.y.max(0.0);
-        let last = bottom.y.min(self.height as f64);
+        let first = top.y.max(self.top as f64);
+        let last = bottom.y.min(self.bottom as f64);
         if first >= last {
             return;
         }
@@ -89,7 +131,7 @@ impl Differences {
         let mut y = first;
         while y < last {
             let next = ((row + 1) as f64).min(last);
-            self.add_piece(row, sign * (next - y), x_at(y), x_at(next));
+            self.add_piece(row - self.top, sign * (next - y), x_at(y), x_at(next));
             y = next;
             row += 1;
         }
@@ -99,10 +141,15 @@ impl Differences {
     fn add_piece(&mut self, row: usize, height: f64, from: f64, to: f64) {
         let width = (self.stride - 1) as f64;
         let (left, right) = (from.min(to), from.max(to));
-        let row = &mut self.values[row * self.stride..(row + 1) * self.stride];
         if left >= width {
             return;
         }
+        self.touch(
+            row,
+            left.max(0.0) as usize,
+            (right.max(0.0).ceil() as usize).min(self.stride - 1),
+        );
+        let row = &mut self.differences[row * self.stride..(row + 1) * self.stride];
         if right <= 0.0 {
             row[0] += height as f32;
             return;
@@ -118,6 +165,14 @@ impl Differences {
             return;
         }
         Self::add_inside(row, height, left, right);
+    }
+
+    /// Notes that columns `first` to `last` and the one after `first` may differ from the one before them.
+    fn touch(&mut self, row: usize, first: usize, last: usize) {
+        let words = self.stride.div_ceil(64);
+        for column in first..=last.max(first + 1).min(self.stride - 1) {
+            self.touched[row * words + column / 64] |= 1 << (column % 64);
+        }
     }
 
     fn add_inside(row: &mut [f32], height: f64, left: f64, right: f64) {

@@ -7,20 +7,25 @@
 //! ([`coverage`]).
 
 mod camera;
+mod colour_blend;
 pub mod coverage;
 pub mod diagram;
 pub mod drawing;
 mod frame;
+mod level;
 mod nearest_seed;
 mod painter;
 pub mod puppet;
 mod puppet_texture;
 pub mod raster;
+mod reached;
+mod sampler;
 mod silhouette;
 mod texture;
 
 pub use camera::Camera;
+pub use colour_blend::ColourBlend;
 pub use frame::Frame;
-pub use painter::{Painter, PoseTexture};
+pub use painter::{PaintOptions, Painter, PoseTexture};
 pub use silhouette::Silhouette;
 pub use texture::Texture;

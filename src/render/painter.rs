@@ -1,24 +1,41 @@
 //! One frame from one blended mesh.
 //!
-//! 1. The colours: the mesh is rasterised at [`SAMPLES`]^2 samples a pixel; at each, the textures are
-//!    looked up through the triangle's affine map and averaged with the texture weights, premultiplied. A pixel's
-//!    colour is the mean of its samples.
+//! 1. The colours: each pixel's centre (with supersampling, each of K x K samples) lies in at most one triangle of the
+//!    mesh. There the textures are looked up through the triangle's affine map, one bilinear look-up each, and averaged
+//!    with the texture weights, premultiplied.
 //! 2. The edge: the exact area of each pixel inside the blended outline.
-//! 3. The pixel is colour times area. Pixels inside the outline that no sample reached (less than a sample beyond the
-//!    mesh) take the mean of their neighbours.
+//! 3. Pixels inside the outline that no sample reached (less than a sample beyond the mesh, or under a fold) take the
+//!    nearest colour.
+//! 4. A pixel at the edge is colour times area.
+//!
+//! The frame is painted in bands of rows, in parallel. A band is painted row by row across all triangles, which reads textures
+//! in long runs; each pixel is written once, by integers alone, so the bands do not show. Most pixels are wholly
+//! inside and are never multiplied by an area.
+//!
+//! Cost: #samples inside times #textures that count there, #edges of the outline, #triangles a band.
 
-use super::coverage::Coverage;
-use super::{Camera, Frame, Silhouette, Texture, raster};
-use crate::math::Point;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::colour_blend::{ColourBlend, Light, Linear, Plain};
+use super::coverage::{CoverageRows, edges};
+use super::level::Level;
+use super::raster::{PlacedVertices, Span};
+use super::reached::{Reached, nearest_reached};
+use super::sampler::{Channels, LANES, Walk, look_up, whole_weights};
+use super::{Camera, Frame, Silhouette, Texture};
+use crate::math::{Point, vectorised};
 use crate::mesh::geometry;
 use crate::pose::Mapping;
 
-/// Colour samples along a pixel's side.
-const SAMPLES: usize = 2;
 /// A texture that counts for less than this changes no channel by half a step and is not looked up.
 const FAINTEST_WEIGHT: f64 = 1e-3;
-/// How often colours are spread by one pixel to where the outline leaves the mesh.
-const SPREADS: usize = 3;
+/// Rows of pixels painted at a time. Enough that few triangles are begun twice, few enough to share them out evenly.
+const BAND_ROWS: usize = 32;
+/// A pixel whose covered area differs by less than this from all or nothing is wholly inside or outside: the difference
+/// is rounding, or less than half a step.
+const LEAST_AREA: f32 = 1.0 / 512.0;
 
 /// A texture and the pose on whose drawing it was made.
 #[derive(Debug, Clone)]
@@ -29,17 +46,52 @@ pub struct PoseTexture {
     pub drawn_on: usize,
 }
 
+/// How a painter paints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PaintOptions {
+    /// How colours are averaged. Default: [`ColourBlend::Plain`].
+    pub blending: ColourBlend,
+    /// Colour samples along a pixel's side, 1 to [`PaintOptions::MOST_SAMPLES`]; others are moved there. More show finer
+    /// detail where the mesh is turned or squeezed, and take longer; textures should be made for as many
+    /// ([`Texture::new`]). The edge is exact with any. Default: 1.
+    pub supersample: usize,
+}
+
+impl PaintOptions {
+    /// The most samples along a pixel's side.
+    pub const MOST_SAMPLES: usize = 4;
+}
+
+impl Default for PaintOptions {
+    fn default() -> Self {
+        Self {
+            blending: ColourBlend::Plain,
+            supersample: 1,
+        }
+    }
+}
+
 /// Paints frames of one character: built once, used from any number of threads.
 #[derive(Debug, Clone)]
 pub struct Painter {
     triangles: Vec<[usize; 3]>,
-    /// #textures x #vertices, in texels of the texture.
-    texels: Vec<Vec<Point>>,
-    textures: Vec<Texture>,
+    /// `None`: drawn on a pose that is not there.
+    textures: Vec<Option<OnMesh>>,
     /// The texture that each pose shows.
     texture_of: Vec<usize>,
     silhouette: Silhouette,
     camera: Camera,
+    options: PaintOptions,
+}
+
+/// A texture bound to the mesh.
+#[derive(Debug, Clone)]
+struct OnMesh {
+    texture: Texture,
+    /// #vertices, in texels.
+    texels: Vec<Point>,
+    /// How many texels the mesh covers.
+    area: f64,
 }
 
 impl Painter {
@@ -54,22 +106,33 @@ impl Painter {
         texture_of: Vec<usize>,
         silhouette: Silhouette,
         camera: Camera,
+        options: PaintOptions,
     ) -> Self {
         let positions = mapping.poses.positions();
-        let texels = |of: &PoseTexture| {
-            positions[of.drawn_on]
+        let triangles = mapping.poses.topology().triangles();
+        let bound = |of: PoseTexture| {
+            let texels: Vec<Point> = positions
+                .get(of.drawn_on)?
                 .iter()
                 .map(|p| of.texture.to_texels(*p))
-                .collect()
+                .collect();
+            let area = |t: &[usize; 3]| geometry::signed_area(geometry::corners(&texels, *t));
+            Some(OnMesh {
+                area: triangles.iter().map(area).sum(),
+                texels,
+                texture: of.texture,
+            })
         };
-        let is_known = |of: &PoseTexture| of.drawn_on < positions.len();
         Self {
-            triangles: mapping.poses.topology().triangles().to_vec(),
-            texels: textures.iter().filter(|of| is_known(of)).map(texels).collect(),
-            textures: textures.into_iter().filter(is_known).map(|of| of.texture).collect(),
+            triangles: triangles.to_vec(),
+            textures: textures.into_iter().map(bound).collect(),
             texture_of,
             silhouette,
             camera,
+            options: PaintOptions {
+                supersample: options.supersample.clamp(1, PaintOptions::MOST_SAMPLES),
+                ..options
+            },
         }
     }
 
@@ -80,7 +143,7 @@ impl Painter {
     }
 
     /// The frame of the shape whose #vertices positions are `positions`, blended with `weights`, its textures with
-    /// `texture_weights`. The background is clear.
+    /// `texture_weights`, one a pose; those that are not positive show nothing. The background is clear.
     #[must_use]
     pub fn paint(&self, positions: &[Point], weights: &[f64], texture_weights: &[f64]) -> Frame {
         let [columns, rows] = self.camera.size();
@@ -95,82 +158,304 @@ impl Painter {
             return frame;
         };
         let shift = Point::new(window.left as f64, window.top as f64);
-        let rings: Vec<Vec<Point>> = rings
-            .into_iter()
-            .map(|r| r.into_iter().map(|p| p - shift).collect())
-            .collect();
-        let coverage = Coverage::of(rings.iter().map(Vec::as_slice), window.width, window.height);
-        let placed: Vec<Point> = positions.iter().map(|p| self.camera.to_pixels(*p) - shift).collect();
-        let mut colours = self.colours(&placed, texture_weights, window.width, window.height);
-        spread(&mut colours, &coverage);
-        for (i, (colour, area)) in colours.iter().zip(coverage.areas()).enumerate() {
-            if *area > 0.0 && colour.count > 0.0 {
-                let (x, y) = (window.left + i % window.width, window.top + i / window.width);
-                frame.pixels[y * columns + x] = colour.sum.map(|c| (c / colour.count * area + 0.5) as u8);
+        let mut edges_of_bands = vec![Vec::new(); window.height.div_ceil(BAND_ROWS)];
+        for ring in &rings {
+            for edge in edges(ring) {
+                let edge = edge.map(|p| p - shift);
+                // Casts saturate; an edge above the window belongs to no band.
+                let band = |y: f64| (y / BAND_ROWS as f64) as usize;
+                let (top, bottom) = (edge[0].y.min(edge[1].y), edge[0].y.max(edge[1].y));
+                let last = band(bottom).min(edges_of_bands.len() - 1);
+                if bottom > 0.0 {
+                    for edges in edges_of_bands.iter_mut().take(last + 1).skip(band(top)) {
+                        edges.push(edge);
+                    }
+                }
             }
         }
+        let samples = self.options.supersample as f64;
+        let placed: Vec<Point> = positions
+            .iter()
+            .map(|p| (self.camera.to_pixels(*p) - shift) * samples)
+            .collect();
+        let vertices = PlacedVertices::new(&placed);
+        let shown = self.shown(&vertices, texture_weights);
+        if shown.is_empty() {
+            return frame;
+        }
+        let scene = Scene {
+            triangles: &self.triangles,
+            vertices: &vertices,
+            shown: &shown,
+            window: &window,
+            columns,
+            samples: self.options.supersample,
+        };
+        let pixels = &mut frame.pixels[window.top * columns..(window.top + window.height) * columns];
+        let bands: Vec<Band> = pixels
+            .par_chunks_mut(BAND_ROWS * columns)
+            .zip(&edges_of_bands)
+            .enumerate()
+            .map(|(band, (pixels, edges))| {
+                // One texture alone is the same in either light, and most frames of an animation rest on a pose.
+                if self.options.blending == ColourBlend::Plain || shown.len() == 1 {
+                    scene.band(band * BAND_ROWS, pixels, edges, Plain)
+                } else {
+                    scene.band(band * BAND_ROWS, pixels, edges, Linear::new())
+                }
+            })
+            .collect();
+        fill_unreached(pixels, &window, columns, &bands);
+        pixels
+            .par_chunks_mut(BAND_ROWS * columns)
+            .zip(&bands)
+            .for_each(|(pixels, band)| band.cut_out(pixels));
         frame
     }
 
-    fn colours(&self, placed: &[Point], texture_weights: &[f64], width: usize, height: usize) -> Vec<Mean> {
-        let mut colours = vec![Mean::default(); width * height];
+    /// The textures that count, in the pictures that fit their size in the frame.
+    fn shown<'a>(&'a self, vertices: &PlacedVertices, texture_weights: &[f64]) -> Vec<Shown<'a>> {
         let mut of_textures = vec![0.0; self.textures.len()];
         for (texture, weight) in self.texture_of.iter().zip(texture_weights) {
             if let Some(sum) = of_textures.get_mut(*texture) {
                 *sum += weight;
             }
         }
-        let counting: Vec<(usize, f32)> = of_textures
+        let total: f64 = of_textures.iter().filter(|weight| **weight > 0.0).sum();
+        let counting: Vec<(&OnMesh, f64)> = self
+            .textures
             .iter()
-            .enumerate()
-            .filter(|(_, weight)| weight.abs() >= FAINTEST_WEIGHT)
-            .map(|(texture, weight)| (texture, *weight as f32))
+            .zip(of_textures)
+            .filter_map(|(of, weight)| Some((of.as_ref()?, weight)))
+            .filter(|(_, weight)| weight.is_finite() && *weight > FAINTEST_WEIGHT * total)
             .collect();
-        let total: f32 = counting.iter().map(|(_, weight)| weight).sum();
-        let samples: Vec<Point> = placed.iter().map(|p| p * SAMPLES as f64).collect();
-        let mut maps: Vec<AffineMap> = Vec::new();
-        let mut mapped_triangle = usize::MAX;
-        raster::for_each_span(&self.triangles, &samples, width * SAMPLES, height * SAMPLES, |span| {
-            if span.triangle != mapped_triangle {
-                mapped_triangle = span.triangle;
-                let corners = self.triangles[span.triangle];
-                maps.clear();
-                maps.extend(counting.iter().map(|(texture, _)| {
-                    AffineMap::between(
-                        geometry::corners(&samples, corners),
-                        geometry::corners(&self.texels[*texture], corners),
-                    )
-                }));
-            }
-            let row = &mut colours[span.row / SAMPLES * width..(span.row / SAMPLES + 1) * width];
-            for column in span.start..span.end {
-                row[column / SAMPLES].count += 1.0;
-            }
-            for ((texture, weight), map) in counting.iter().zip(&maps) {
-                let texture = &self.textures[*texture];
-                let weight = weight / total;
-                let start = map.apply(Point::new(span.start as f64 + 0.5, span.row as f64 + 0.5));
-                let (u, v) = (start.x as f32, start.y as f32);
-                let (du, dv) = (map.along_x.x as f32, map.along_x.y as f32);
-                for column in span.start..span.end {
-                    let steps = (column - span.start) as f32;
-                    let colour = texture.sample(u + steps * du, v + steps * dv);
-                    let sum = &mut row[column / SAMPLES].sum;
-                    for (s, c) in sum.iter_mut().zip(colour) {
-                        *s += weight * c;
-                    }
+        let weights: Vec<f64> = counting.iter().map(|(_, weight)| *weight).collect();
+        let samples = vertices.covered_area(&self.triangles);
+        counting
+            .iter()
+            .zip(whole_weights(&weights))
+            .map(|((of, _), weight)| {
+                let (level, smaller) = of.texture.level_for((of.area / samples).sqrt());
+                Shown {
+                    level,
+                    texels: &of.texels,
+                    scale: 1.0 / smaller,
+                    weight,
                 }
-            }
-        });
-        colours
+            })
+            .collect()
     }
 }
 
-/// The samples of a pixel added up.
-#[derive(Debug, Clone, Copy, Default)]
-struct Mean {
-    sum: [f32; 4],
-    count: f32,
+/// A texture that counts in a frame.
+struct Shown<'a> {
+    level: &'a Level,
+    /// #vertices, in texels of the finest level.
+    texels: &'a [Point],
+    /// From those to texels of `level`.
+    scale: f64,
+    /// Of [`WHOLE_WEIGHT`](super::sampler::WHOLE_WEIGHT).
+    weight: u32,
+}
+
+/// What all bands of a frame share.
+struct Scene<'a> {
+    triangles: &'a [[usize; 3]],
+    /// In samples, from the window's corner.
+    vertices: &'a PlacedVertices,
+    shown: &'a [Shown<'a>],
+    window: &'a Window,
+    /// Of the frame.
+    columns: usize,
+    samples: usize,
+}
+
+/// What is left to do in a band whose colours are painted. Places are indices of its pixels.
+struct Band {
+    reached: Reached,
+    /// Runs of painted pixels outside the outline.
+    outside: Vec<Range<usize>>,
+    /// Pixels at the edge, and how much of each is inside.
+    partly: Vec<(usize, f32)>,
+    /// Pixels inside that no sample reached: columns and rows of the window.
+    unreached: Vec<[usize; 2]>,
+}
+
+impl Scene<'_> {
+    /// Paints the colours of the band that begins at row `top` of the window.
+    fn band(&self, top: usize, pixels: &mut [[u8; 4]], edges: &[[Point; 2]], light: impl Light) -> Band {
+        let height = pixels.len() / self.columns;
+        let reached = if self.samples == 1 {
+            self.paint_centres(top, pixels, light)
+        } else {
+            self.paint_means(top, pixels, light)
+        };
+        let mut coverage = CoverageRows::new(self.window.width, top..top + height);
+        for [a, b] in edges {
+            coverage.add_edge(*a, *b);
+        }
+        let mut band = Band {
+            reached,
+            outside: Vec::new(),
+            partly: Vec::new(),
+            unreached: Vec::new(),
+        };
+        for row in 0..height {
+            let first = row * self.columns + self.window.left;
+            coverage.for_each_run(row, |columns, area| {
+                if area < LEAST_AREA {
+                    if let Some(painted) = band.reached.extent(row, columns) {
+                        band.outside.push(first + painted.start..first + painted.end);
+                    }
+                    return;
+                }
+                band.reached
+                    .for_each_unreached(row, columns.clone(), |column| band.unreached.push([column, top + row]));
+                if area < 1.0 - LEAST_AREA {
+                    band.partly.extend(columns.map(|column| (first + column, area)));
+                }
+            });
+        }
+        band
+    }
+
+    /// One sample a pixel.
+    fn paint_centres(&self, top: usize, pixels: &mut [[u8; 4]], light: impl Light) -> Reached {
+        let height = pixels.len() / self.columns;
+        let mut reached = Reached::new(self.window.width, height);
+        self.for_each_span(top..top + height, |span, walks| {
+            let row = span.row - top;
+            reached.add(row, span.start..span.end);
+            let start = row * self.columns + self.window.left;
+            let pixels = &mut pixels[start + span.start..start + span.end];
+            vectorised(
+                #[inline(always)]
+                || {
+                    for (run, pixels) in pixels.chunks_mut(LANES).enumerate() {
+                        let colours = light.encode(&self.colours(walks, run * LANES, light));
+                        pixels.copy_from_slice(&colours[..pixels.len()]);
+                    }
+                },
+            );
+        });
+        reached
+    }
+
+    /// The mean of the samples of each pixel.
+    fn paint_means(&self, top: usize, pixels: &mut [[u8; 4]], light: impl Light) -> Reached {
+        let (height, width) = (pixels.len() / self.columns, self.window.width);
+        let mut reached = Reached::new(width, height);
+        /// The sums of a pixel's channels lose these bits, to fit 32 for the most samples.
+        const LOST_BITS: u32 = 4;
+        let mut means = vec![([0u32; 4], 0u32); width * height];
+        let rows = top * self.samples..(top + height) * self.samples;
+        self.for_each_span(rows, |span, walks| {
+            let row = span.row / self.samples - top;
+            let (first, last) = (span.start / self.samples, (span.end - 1) / self.samples);
+            reached.add(row, first..last + 1);
+            let means = &mut means[row * width..(row + 1) * width];
+            for start in (span.start..span.end).step_by(LANES) {
+                let sums = vectorised(
+                    #[inline(always)]
+                    || self.colours(walks, start - span.start, light),
+                );
+                for (lane, column) in (start..span.end.min(start + LANES)).enumerate() {
+                    let (sum, count) = &mut means[column / self.samples];
+                    for (sum, channel) in sum.iter_mut().zip(&sums) {
+                        *sum += channel[lane] >> LOST_BITS;
+                    }
+                    *count += 1;
+                }
+            }
+        });
+        for (row, means) in means.chunks_exact(width).enumerate() {
+            let start = row * self.columns + self.window.left;
+            let pixels = pixels[start..start + width].chunks_mut(LANES);
+            for (pixels, means) in pixels.zip(means.chunks(LANES)) {
+                let mut sums: Channels = [[0; LANES]; 4];
+                for (lane, (sum, count)) in means.iter().enumerate() {
+                    for (channel, sum) in sums.iter_mut().zip(sum) {
+                        channel[lane] = sum.checked_div(*count).unwrap_or(0) << LOST_BITS;
+                    }
+                }
+                pixels.copy_from_slice(&light.encode(&sums)[..pixels.len()]);
+            }
+        }
+        reached
+    }
+
+    /// Calls `paint` for each span of some rows of samples, with the walks through the textures that begin at its start:
+    /// row by row and from left to right, as textures lie in memory where they are not turned.
+    #[inline(always)]
+    fn for_each_span(&self, rows: Range<usize>, mut paint: impl FnMut(Span, &[Walk])) {
+        let mut maps: Vec<AffineMap> = Vec::new();
+        // The spans, and where the maps of each one's triangle begin.
+        let mut spans: Vec<(Span, usize)> = Vec::new();
+        let mut mapped_triangle = usize::MAX;
+        let width = self.window.width * self.samples;
+        self.vertices.for_each_span(self.triangles, width, rows, |span| {
+            if span.triangle != mapped_triangle {
+                mapped_triangle = span.triangle;
+                let triangle = self.triangles[span.triangle];
+                let from = TriangleFrame::new(self.vertices.corners(triangle));
+                maps.extend(
+                    self.shown
+                        .iter()
+                        .map(|of| from.map_to(geometry::corners(of.texels, triangle).map(|p| p * of.scale))),
+                );
+            }
+            spans.push((span, maps.len() - self.shown.len()));
+        });
+        spans.sort_unstable_by_key(|(span, _)| (span.row, span.start, span.triangle));
+        let mut walks: Vec<Walk> = Vec::with_capacity(self.shown.len());
+        for (span, map) in spans {
+            let start = Point::new(span.start as f64 + 0.5, span.row as f64 + 0.5);
+            let maps = &maps[map..map + self.shown.len()];
+            walks.clear();
+            walks.extend(maps.iter().map(|map| Walk::new(map.apply(start), map.along_x)));
+            paint(span, &walks);
+        }
+    }
+
+    /// The weighted sums of the textures at `LANES` samples of a span, from its sample `first` on.
+    #[inline(always)]
+    fn colours(&self, walks: &[Walk], first: usize, light: impl Light) -> Channels {
+        let mut sums: Channels = [[0; LANES]; 4];
+        for (shown, walk) in self.shown.iter().zip(walks) {
+            let channels = light.decode(look_up(shown.level, walk, first));
+            for (sum, channel) in sums.iter_mut().zip(&channels) {
+                for (sum, value) in sum.iter_mut().zip(channel) {
+                    *sum += value * shown.weight;
+                }
+            }
+        }
+        sums
+    }
+}
+
+impl Band {
+    /// Clears what is outside and lets pixels at the edge through by what is inside.
+    fn cut_out(&self, pixels: &mut [[u8; 4]]) {
+        for run in &self.outside {
+            pixels[run.clone()].fill([0; 4]);
+        }
+        for (pixel, area) in &self.partly {
+            let pixel = &mut pixels[*pixel];
+            *pixel = pixel.map(|c| (f32::from(c) * area + 0.5) as u8);
+        }
+    }
+}
+
+/// Gives pixels inside the outline that no sample reached the nearest colour.
+fn fill_unreached(pixels: &mut [[u8; 4]], window: &Window, columns: usize, bands: &[Band]) {
+    let unreached: Vec<[usize; 2]> = bands.iter().flat_map(|band| band.unreached.iter().copied()).collect();
+    let is_reached = |[x, y]: [usize; 2]| bands[y / BAND_ROWS].reached.is_reached(y % BAND_ROWS, x);
+    let nearest = nearest_reached(&unreached, [window.width, window.height], is_reached);
+    for ([x, y], from) in unreached.iter().zip(nearest) {
+        if let Some([near_x, near_y]) = from {
+            pixels[y * columns + window.left + x] = pixels[near_y * columns + window.left + near_x];
+        }
+    }
 }
 
 /// The part of the frame that a shape touches.
@@ -198,6 +483,37 @@ impl Window {
     }
 }
 
+/// A triangle with area from which affine maps lead to others.
+struct TriangleFrame {
+    corner: Point,
+    /// How fast the second and third barycentric coordinates grow along x and along y.
+    along_x: [f64; 2],
+    along_y: [f64; 2],
+}
+
+impl TriangleFrame {
+    fn new([a, b, c]: [Point; 3]) -> Self {
+        let (e, f) = (b - a, c - a);
+        let doubled_area = crate::math::point::cross(e, f);
+        Self {
+            corner: a,
+            along_x: [f.y / doubled_area, -e.y / doubled_area],
+            along_y: [-f.x / doubled_area, e.x / doubled_area],
+        }
+    }
+
+    fn map_to(&self, [a, b, c]: [Point; 3]) -> AffineMap {
+        let (e, f) = (b - a, c - a);
+        let along_x = e * self.along_x[0] + f * self.along_x[1];
+        let along_y = e * self.along_y[0] + f * self.along_y[1];
+        AffineMap {
+            along_x,
+            along_y,
+            shift: a - along_x * self.corner.x - along_y * self.corner.y,
+        }
+    }
+}
+
 /// The affine map that takes one triangle to another.
 struct AffineMap {
     along_x: Point,
@@ -206,59 +522,14 @@ struct AffineMap {
 }
 
 impl AffineMap {
-    fn between(from: [Point; 3], to: [Point; 3]) -> Self {
-        // Rasterised triangles have area; one that rounding alone made positive maps to its corner.
-        let inverse = geometry::edge_matrix(from)
-            .try_inverse()
-            .unwrap_or_else(crate::math::Matrix::zeros);
-        let linear = geometry::edge_matrix(to) * inverse;
-        Self {
-            along_x: linear.column(0).into_owned(),
-            along_y: linear.column(1).into_owned(),
-            shift: to[0] - linear * from[0],
-        }
-    }
-
     fn apply(&self, p: Point) -> Point {
         self.along_x * p.x + self.along_y * p.y + self.shift
     }
 }
 
-/// Gives pixels inside the outline without a sample the mean of their neighbours'.
-fn spread(colours: &mut [Mean], coverage: &Coverage) {
-    let (width, height) = (coverage.width(), coverage.height());
-    for _ in 0..SPREADS {
-        let mut found = Vec::new();
-        for (i, _) in colours
-            .iter()
-            .enumerate()
-            .filter(|(i, c)| c.count == 0.0 && coverage.areas()[*i] > 0.0)
-        {
-            let (x, y) = (i % width, i / width);
-            let mut mean = Mean::default();
-            for ny in y.saturating_sub(1)..(y + 2).min(height) {
-                for nx in x.saturating_sub(1)..(x + 2).min(width) {
-                    let neighbour = colours[ny * width + nx];
-                    if neighbour.count > 0.0 {
-                        mean.count += 1.0;
-                        for (s, c) in mean.sum.iter_mut().zip(neighbour.sum) {
-                            *s += c / neighbour.count;
-                        }
-                    }
-                }
-            }
-            if mean.count > 0.0 {
-                found.push((i, mean));
-            }
-        }
-        for (i, mean) in found {
-            colours[i] = mean;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::coverage::Coverage;
     use super::*;
     use crate::input::Picture;
     use crate::matching::Correspondence;
@@ -268,6 +539,10 @@ mod tests {
 
     /// Two drawings, a wide red and a tall blue rectangle, each in a mesh that is 2 larger on every side.
     fn painter() -> (Painter, Mapping) {
+        painter_with(PaintOptions::default())
+    }
+
+    fn painter_with(options: PaintOptions) -> (Painter, Mapping) {
         let boxes = [[10.0, 20.0, 50.0, 40.0], [20.0, 10.0, 40.0, 50.0]];
         let corner = |[l, t, r, b]: [f64; 4], by: f64| {
             [[l - by, t - by], [r + by, t - by], [r + by, b + by], [l - by, b + by]]
@@ -326,7 +601,7 @@ mod tests {
         let camera = Camera::fitting(&[Point::new(0.0, 0.0), Point::new(60.0, 60.0)], [60, 60]);
         let silhouette = Silhouette::new(&mapping);
         (
-            Painter::new(&mapping, textures, vec![0, 1], silhouette, camera),
+            Painter::new(&mapping, textures, vec![0, 1], silhouette, camera, options),
             mapping,
         )
     }

@@ -29,51 +29,87 @@ pub struct Span {
     pub end: usize,
 }
 
-/// Calls `draw` for each span that `triangles` cover on a grid of `width` x `height` samples, triangle by triangle.
-/// Positions are in samples: sample (i, j) has its centre at (i + 1/2, j + 1/2).
-pub fn for_each_span(
-    triangles: &[[usize; 3]],
-    positions: &[Point],
-    width: usize,
-    height: usize,
-    mut draw: impl FnMut(Span),
-) {
-    let place = |v: f64| (v.clamp(-FARTHEST, FARTHEST) * PARTS as f64).round() as i64;
-    let placed: Vec<[i64; 2]> = positions.iter().map(|p| [place(p.x), place(p.y)]).collect();
-    for (triangle, corners) in triangles.iter().enumerate() {
-        let [a, b, c] = corners.map(|v| placed[v]);
-        let doubled_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        if doubled_area <= 0 {
-            continue;
+/// Vertices placed on a grid of samples.
+#[derive(Debug, Clone)]
+pub struct PlacedVertices {
+    /// In parts of a sample.
+    places: Vec<[i64; 2]>,
+}
+
+impl PlacedVertices {
+    /// Places `positions`, in samples: sample (i, j) has its centre at (i + 1/2, j + 1/2).
+    #[must_use]
+    pub fn new(positions: &[Point]) -> Self {
+        let place = |v: f64| (v.clamp(-FARTHEST, FARTHEST) * PARTS as f64).round() as i64;
+        Self {
+            places: positions.iter().map(|p| [place(p.x), place(p.y)]).collect(),
         }
-        let lowest = a[1].min(b[1]).min(c[1]);
-        let highest = a[1].max(b[1]).max(c[1]);
-        // Rows whose centres lie in [lowest, highest).
-        let first = first_centre_from(lowest, 1).max(0);
-        let end = first_centre_from(highest, 1).min(height as i64);
-        for row in first..end {
-            let centre = row * PARTS + PARTS / 2;
-            let (mut start, mut stop) = (i64::MAX, i64::MIN);
-            for (p, q) in [(a, b), (b, c), (c, a)] {
-                let (p, q) = if p[1] <= q[1] { (p, q) } else { (q, p) };
-                if p[1] <= centre && centre < q[1] {
-                    // The crossing is at numerator / rise; both triangles at this edge compute the same numbers.
-                    let rise = q[1] - p[1];
-                    let numerator = p[0] * rise + (centre - p[1]) * (q[0] - p[0]);
-                    let column = first_centre_from(numerator, rise);
-                    start = start.min(column);
-                    stop = stop.max(column);
-                }
+    }
+
+    /// Where a triangle was placed, in samples. Every sample of its spans lies in it, exactly.
+    #[must_use]
+    pub fn corners(&self, triangle: [usize; 3]) -> [Point; 3] {
+        triangle.map(|v| {
+            let [x, y] = self.places[v];
+            Point::new(x as f64, y as f64) / PARTS as f64
+        })
+    }
+
+    /// Twice the area of a triangle in parts of samples squared; not positive if it covers nothing.
+    fn doubled_area(&self, triangle: [usize; 3]) -> i64 {
+        let [a, b, c] = triangle.map(|v| self.places[v]);
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    }
+
+    /// The area that `triangles` cover, in samples, beyond the grid's border, too.
+    #[must_use]
+    pub fn covered_area(&self, triangles: &[[usize; 3]]) -> f64 {
+        let doubled: f64 = triangles.iter().map(|t| self.doubled_area(*t).max(0) as f64).sum();
+        0.5 * doubled / (PARTS * PARTS) as f64
+    }
+
+    /// Calls `draw` for each span that `triangles` cover of `rows` of a grid `width` samples wide, triangle by triangle.
+    pub fn for_each_span(
+        &self,
+        triangles: &[[usize; 3]],
+        width: usize,
+        rows: std::ops::Range<usize>,
+        mut draw: impl FnMut(Span),
+    ) {
+        for (triangle, corners) in triangles.iter().enumerate() {
+            let [a, b, c] = corners.map(|v| self.places[v]);
+            let lowest = a[1].min(b[1]).min(c[1]);
+            let highest = a[1].max(b[1]).max(c[1]);
+            // Rows whose centres lie in [lowest, highest).
+            let first = first_centre_from(lowest, 1).max(rows.start as i64);
+            let end = first_centre_from(highest, 1).min(rows.end as i64);
+            if first >= end || self.doubled_area(*corners) <= 0 {
+                continue;
             }
-            let start = start.max(0);
-            let stop = stop.min(width as i64);
-            if start < stop {
-                draw(Span {
-                    triangle,
-                    row: row as usize,
-                    start: start as usize,
-                    end: stop as usize,
-                });
+            for row in first..end {
+                let centre = row * PARTS + PARTS / 2;
+                let (mut start, mut stop) = (i64::MAX, i64::MIN);
+                for (p, q) in [(a, b), (b, c), (c, a)] {
+                    let (p, q) = if p[1] <= q[1] { (p, q) } else { (q, p) };
+                    if p[1] <= centre && centre < q[1] {
+                        // The crossing is at numerator / rise; both triangles at this edge compute the same numbers.
+                        let rise = q[1] - p[1];
+                        let numerator = p[0] * rise + (centre - p[1]) * (q[0] - p[0]);
+                        let column = first_centre_from(numerator, rise);
+                        start = start.min(column);
+                        stop = stop.max(column);
+                    }
+                }
+                let start = start.max(0);
+                let stop = stop.min(width as i64);
+                if start < stop {
+                    draw(Span {
+                        triangle,
+                        row: row as usize,
+                        start: start as usize,
+                        end: stop as usize,
+                    });
+                }
             }
         }
     }
@@ -93,11 +129,15 @@ mod tests {
 
     fn counts(triangles: &[[usize; 3]], positions: &[Point], side: usize) -> Vec<u32> {
         let mut counts = vec![0; side * side];
-        for_each_span(triangles, positions, side, side, |span| {
-            for x in span.start..span.end {
-                counts[span.row * side + x] += 1;
-            }
-        });
+        // In two bands of rows, as several threads would.
+        let placed = PlacedVertices::new(positions);
+        for rows in [0..side / 3, side / 3..side] {
+            placed.for_each_span(triangles, side, rows, |span| {
+                for x in span.start..span.end {
+                    counts[span.row * side + x] += 1;
+                }
+            });
+        }
         counts
     }
 

@@ -1,17 +1,21 @@
 //! A pose's picture made ready to be warped.
 //!
 //! Picture and outline -> a picture of colours without edges:
-//! 1. Halved until a texel is not much finer than a frame's sample, so that bilinear sampling does not alias.
+//! 1. Shrunk, each texel the mean of what it covers, if it is much finer than a frame's samples: one bilinear look-up a
+//!    sample then misses nothing and does not alias.
 //! 2. In a thin band inside the outline, where alpha is the anti-aliased edge of the drawing, colours are divided by
 //!    it: the edge becomes as opaque as the drawing behind it.
 //! 3. Every pixel outside takes the nearest colour inside.
+//! 4. Halved a few times more, for frames that show the drawing smaller than it was made for.
 //!
 //! So wherever a frame's outline lies near the pose's own, the texture gives the drawing's colour at full strength,
 //! and no fringe of paper or transparency shows. Transparency further inside (glass, holes that are filled) is kept.
 //!
-//! Limits: what is translucent within the band is taken to be as opaque as the most opaque pixel near it.
+//! Limits: what is translucent within the band is taken to be as opaque as the most opaque pixel near it. A frame takes
+//! one of the halvings for all of a texture: a part alone that shrinks to less than half its size may alias.
 
 use super::coverage::Coverage;
+use super::level::{Level, MOST_TEXELS};
 use super::nearest_seed::nearest_seeds;
 use crate::input::Picture;
 use crate::math::Point;
@@ -25,16 +29,21 @@ const BAND_PX: f64 = 2.5;
 const FAINTEST: f32 = 0.4;
 /// How far behind the edge the drawing's own alpha is looked for, in pixels.
 const BEHIND_PX: usize = 4;
-/// Texels that a frame's pixel may span before the picture is halved: samples are half a pixel apart, and bilinear
-/// sampling is good down to about 1.5 texels a sample.
-const TEXELS_A_PIXEL: f64 = 3.0;
+/// Texels a sample may span: beyond, single bilinear look-ups begin to skip texels.
+const MOST_TEXELS_A_SAMPLE: f64 = 1.9;
+/// Texels a sample spans after shrinking: fine enough that a shift or turn against the frame's grid blurs little.
+const TEXELS_A_SAMPLE: f64 = 1.4;
+/// How much smaller than meant a drawing may be shown before a halved texture is taken: shapes that breathe a little
+/// should not change sharpness with it.
+const SLACK: f64 = 1.2;
+/// How often a texture is halved for frames that show it small.
+const HALVINGS: usize = 4;
 
 /// A premultiplied picture whose colours reach beyond its outline, sampled in source units.
 #[derive(Clone)]
 pub struct Texture {
-    width: usize,
-    height: usize,
-    pixels: Vec<[u8; 4]>,
+    /// Each half as wide and high as the one before.
+    levels: Vec<Level>,
     origin: Point,
     pixels_per_unit: f64,
 }
@@ -42,28 +51,42 @@ pub struct Texture {
 impl std::fmt::Debug for Texture {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Texture")
-            .field("width", &self.width)
-            .field("height", &self.height)
+            .field("width", &self.levels[0].width())
+            .field("height", &self.levels[0].height())
             .finish_non_exhaustive()
     }
 }
 
 impl Texture {
-    /// The texture of `picture`, whose shape is `outline`, for frames at `frame_scale` pixels a source unit.
+    /// The texture of `picture`, whose shape is `outline`, for frames with `samples_per_unit` samples a source unit:
+    /// the camera's scale, times [`PaintOptions::supersample`](super::PaintOptions::supersample).
     #[must_use]
-    pub fn new(picture: &Picture, outline: &Outline, frame_scale: f64) -> Self {
-        let mut texture = Self {
-            width: picture.width.max(1),
-            height: picture.height.max(1),
-            pixels: picture.pixels.clone(),
-            origin: picture.origin,
-            pixels_per_unit: picture.pixels_per_unit,
-        };
-        texture.pixels.resize(texture.width * texture.height, [0; 4]);
-        while texture.pixels_per_unit > TEXELS_A_PIXEL * frame_scale && texture.width.min(texture.height) > 1 {
-            texture.halve();
+    pub fn new(picture: &Picture, outline: &Outline, samples_per_unit: f64) -> Self {
+        let mut finest = Level::new(picture.width, picture.height, picture.pixels.clone());
+        let mut ratio = MOST_TEXELS as f64 / finest.width().max(finest.height()) as f64;
+        let fineness = picture.pixels_per_unit / samples_per_unit;
+        if fineness > MOST_TEXELS_A_SAMPLE {
+            ratio = ratio.min(TEXELS_A_SAMPLE / fineness);
         }
+        let mut pixels_per_unit = picture.pixels_per_unit;
+        if ratio < 1.0 {
+            finest = finest.shrunk(ratio);
+            pixels_per_unit *= ratio;
+        }
+        let mut texture = Self {
+            levels: vec![finest],
+            origin: picture.origin,
+            pixels_per_unit,
+        };
         texture.bleed(outline);
+        for _ in 0..HALVINGS {
+            let last = &texture.levels[texture.levels.len() - 1];
+            if last.width().min(last.height()) <= 2 {
+                break;
+            }
+            let half = last.shrunk(0.5);
+            texture.levels.push(half);
+        }
         texture
     }
 
@@ -73,51 +96,28 @@ impl Texture {
         (p - self.origin) * self.pixels_per_unit
     }
 
-    /// The premultiplied colour at a place in texels, each channel in 0..255, interpolated between the centres of the
+    /// The premultiplied colour at a place in texels, each channel in 0..=255, interpolated between the centres of the
     /// four texels around it. Beyond the border the border's colour holds.
     #[must_use]
-    #[inline]
     pub fn sample(&self, u: f32, v: f32) -> [f32; 4] {
-        // Written so that NaN becomes 0.
-        let clamp = |t: f32, count: usize| (t - 0.5).max(0.0).min((count - 1) as f32);
-        let (u, v) = (clamp(u, self.width), clamp(v, self.height));
-        let (x, y) = (u as usize, v as usize);
-        let (right, below) = ((x + 1).min(self.width - 1), (y + 1).min(self.height - 1));
-        let (across, down) = (u - x as f32, v - y as f32);
-        let upper = &self.pixels[y * self.width..(y + 1) * self.width];
-        let lower = &self.pixels[below * self.width..(below + 1) * self.width];
-        let (a, b, c, d) = (upper[x], upper[right], lower[x], lower[right]);
-        std::array::from_fn(|k| {
-            let top = f32::from(a[k]) + across * (f32::from(b[k]) - f32::from(a[k]));
-            let bottom = f32::from(c[k]) + across * (f32::from(d[k]) - f32::from(c[k]));
-            top + down * (bottom - top)
-        })
+        self.levels[0].sample(u, v)
     }
 
-    fn halve(&mut self) {
-        let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
-        let mut pixels = Vec::with_capacity(width * height);
-        for y in 0..height {
-            for x in 0..width {
-                let mut sum = [0u32; 4];
-                for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                    // Beyond the border nothing is drawn.
-                    if 2 * x + dx < self.width && 2 * y + dy < self.height {
-                        let pixel = self.pixels[(2 * y + dy) * self.width + 2 * x + dx];
-                        for k in 0..4 {
-                            sum[k] += u32::from(pixel[k]);
-                        }
-                    }
-                }
-                pixels.push(sum.map(|s| ((s + 2) / 4) as u8));
+    /// The picture for samples that span `texels` of its texels, and how many times smaller it is than the finest.
+    pub(super) fn level_for(&self, texels: f64) -> (&Level, f64) {
+        let mut smaller = 1.0;
+        for level in &self.levels[..self.levels.len() - 1] {
+            // Not a number is no reason to look at a coarse picture.
+            if texels / smaller <= MOST_TEXELS_A_SAMPLE * SLACK || texels.is_nan() {
+                return (level, smaller);
             }
+            smaller *= 2.0;
         }
-        (self.width, self.height, self.pixels) = (width, height, pixels);
-        self.pixels_per_unit *= 0.5;
+        (&self.levels[self.levels.len() - 1], smaller)
     }
 
     fn bleed(&mut self, outline: &Outline) {
-        let (width, height) = (self.width, self.height);
+        let (width, height) = (self.levels[0].width(), self.levels[0].height());
         let rings: Vec<Vec<Point>> = outline
             .rings()
             .iter()
@@ -135,7 +135,8 @@ impl Texture {
             let (dx, dy) = ((i % width).abs_diff(seed % width), (i / width).abs_diff(seed / width));
             (dx * dx + dy * dy) as f64
         };
-        let original = self.pixels.clone();
+        let pixels = self.levels[0].texels_mut();
+        let original = pixels.to_vec();
         let mut coloured = vec![false; original.len()];
         for i in 0..original.len() {
             if inside(i) && depth_squared(i) > BAND_PX * BAND_PX {
@@ -151,12 +152,12 @@ impl Texture {
             if alpha >= FAINTEST * behind {
                 coloured[i] = true;
                 let gain = behind / alpha;
-                self.pixels[i] = original[i].map(|c| (f32::from(c) * gain).round().min(255.0) as u8);
+                pixels[i] = original[i].map(|c| (f32::from(c) * gain).round().min(255.0) as u8);
             }
         }
         if let Some(nearest) = nearest_seeds(width, height, |i| coloured[i]) {
             for (i, seed) in nearest.iter().enumerate() {
-                self.pixels[i] = self.pixels[*seed as usize];
+                pixels[i] = pixels[*seed as usize];
             }
         }
     }
@@ -234,7 +235,26 @@ mod tests {
     fn a_small_frame_gets_a_small_texture() {
         let (picture, outline) = disc();
         let texture = Texture::new(&picture, &outline, 0.1);
-        assert_eq!((texture.width, texture.pixels_per_unit), (6, 0.25));
-        assert_eq!(texture.to_texels(Point::new(12.0, 12.0)), Point::new(3.0, 3.0));
+        assert!((texture.pixels_per_unit - 0.14).abs() < 1e-12);
+        assert_eq!(texture.levels[0].width(), 4);
+        assert!((texture.to_texels(Point::new(12.0, 12.0)) - Point::new(1.68, 1.68)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_drawing_shown_small_is_looked_up_in_a_halved_texture() {
+        let (picture, outline) = disc();
+        let texture = Texture::new(&picture, &outline, 1.0);
+        let expected = [
+            (0.1, 24, 1.0),
+            (2.0, 24, 1.0),
+            (2.5, 12, 2.0),
+            (5.0, 6, 4.0),
+            (1e9, 2, 16.0),
+            (f64::NAN, 24, 1.0),
+        ];
+        for (texels, width, smaller) in expected {
+            let (level, found) = texture.level_for(texels);
+            assert_eq!((level.width(), found), (width, smaller), "for {texels}");
+        }
     }
 }
