@@ -1,15 +1,18 @@
-//! Writers, one a format: PNG, PNG sequences, GIF, APNG.
+//! Writers, one a format: PNG, PNG sequences, GIF, APNG, WebP.
 //!
 //! Every file is written under a temporary name beside its target and renamed when it is complete
 //! ([`PendingFile`]), so a run that is killed leaves no torn file, and a run that fails leaves none at all.
 
 mod apng;
+mod changes;
 mod gif;
 mod keys;
 mod palette;
 mod pending;
 mod png;
 mod sequence;
+mod timing;
+mod webp;
 
 pub use apng::ApngWriter;
 pub use gif::{Backdrop, GifWriter};
@@ -18,6 +21,7 @@ pub use palette::Palette;
 pub use pending::PendingFile;
 pub use png::png_bytes;
 pub use sequence::Sequence;
+pub use webp::WebPWriter;
 
 use std::path::{Path, PathBuf};
 

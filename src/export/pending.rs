@@ -1,7 +1,7 @@
 //! A file that appears whole or not at all.
 
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
@@ -81,6 +81,12 @@ impl Write for PendingFile {
 
     fn flush(&mut self) -> std::io::Result<()> {
         self.temporary.flush()
+    }
+}
+
+impl Seek for PendingFile {
+    fn seek(&mut self, place: SeekFrom) -> std::io::Result<u64> {
+        self.temporary.seek(place)
     }
 }
 

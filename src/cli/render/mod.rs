@@ -5,6 +5,7 @@ mod format;
 mod gif;
 mod job;
 mod sequence;
+mod webp;
 
 use std::path::PathBuf;
 
@@ -62,8 +63,8 @@ fn writer(format: Format) -> Option<Writer> {
         Format::Png => Some(sequence::run),
         Format::Gif => Some(gif::run),
         Format::Apng => Some(apng::run),
-        Format::WebP
-        | Format::Svg
+        Format::WebP => Some(webp::run),
+        Format::Svg
         | Format::SvgSequence
         | Format::Lottie
         | Format::Glb
