@@ -275,8 +275,8 @@ fn wrong_usage_is_exit_code_2() {
     let workshop = Workshop::new();
     workshop.two_poses("[0, 0]", "[1, 0]", "");
     for arguments in [
-        &["render", "scene.toml", "-o", "a.mp4"][..],
-        &["render", "scene.toml", "-o", "a", "--format", "spine"],
+        &["render", "scene.toml", "-o", "a.tiff"][..],
+        &["render", "scene.toml", "-o", "a", "--format", "tiff"],
         &["render", "scene.toml", "-o", "a", "--threads", "0"],
         &["render", "scene.toml", "-o", "a.gif", "--resume"],
         &["render", "scene.toml", "-o", "a", "--frames", "1-9999"],

@@ -47,25 +47,12 @@ fn any_frames_on_any_threads_are_the_same_bytes() {
         );
     }
     assert_eq!(std::fs::read_dir(workshop.path("whole")).expect("a folder").count(), 12);
-    // Only what is missing is rendered again.
-    let (first, second) = (
-        workshop.path(&format!("whole/{stem}.0001.png")),
-        workshop.path(&format!("whole/{stem}.0002.png")),
-    );
-    std::fs::write(&first, b"kept").expect("written");
-    std::fs::remove_file(&second).expect("removed");
-    workshop.succeeds(&["render", "scene.toml", "-o", "whole", "--resume"]);
-    assert_eq!(std::fs::read(&first).expect("there"), b"kept");
-    assert_eq!(
-        std::fs::read(&second).expect("there"),
-        bytes(&workshop, &format!("part/{stem}.0002.png"))
-    );
 }
 
 #[test]
-fn gif_and_apng_are_the_same_for_any_threads() {
+fn animations_are_the_same_for_any_threads() {
     let workshop = two();
-    for kind in ["gif", "apng"] {
+    for kind in ["gif", "apng", "webp"] {
         let [one, many] = ["1", "4"].map(|threads| {
             let name = format!("{threads}.{kind}");
             workshop.succeeds(&["render", "scene.toml", "-o", &name, "--threads", threads]);
@@ -269,11 +256,92 @@ fn walls_and_bounds_of_a_scene_are_kept() {
 }
 
 #[test]
-fn progress_is_plain_lines_and_quiet_is_silent() {
+fn progress_is_told_as_asked() {
     let workshop = two();
-    let output = workshop.run(&["render", "scene.toml", "-o", "frames"]);
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(message.contains("12 of 12 frames"), "{message}");
-    let output = workshop.run(&["render", "scene.toml", "-o", "frames", "--quiet"]);
-    assert!(output.stderr.is_empty() && output.stdout.is_empty());
+    let told = |more: &[&str]| {
+        let output = workshop.run(&[&["render", "scene.toml", "-o", "frames"], more].concat());
+        assert!(output.status.success() && output.stdout.is_empty());
+        String::from_utf8(output.stderr).expect("text")
+    };
+    assert!(told(&[]).contains("12 of 12 frames (100 %)"));
+    let lines: Vec<serde_json::Value> = told(&["--progress", "json"])
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .collect();
+    let (first, last) = (&lines[0], &lines[lines.len() - 1]);
+    assert!(first["done"] == 0 && first["total"] == 12 && first["left"].is_null());
+    assert!(last["done"] == 12 && last["left"] == 0.0 && last["seconds"].as_f64().is_some());
+    assert_eq!(told(&["--progress", "none"]), "");
+    assert_eq!(told(&["--quiet"]), "");
+}
+
+#[test]
+fn a_sprite_sheet_is_two_files_or_none() {
+    let workshop = two();
+    let before = workshop.listing();
+    std::fs::create_dir(workshop.path("a.json")).expect("in the way");
+    let message = workshop.fails(&["render", "scene.toml", "-o", "a.png", "--format", "sprites"], 1);
+    assert!(message.contains("a.json"), "{message}");
+    std::fs::remove_dir(workshop.path("a.json")).expect("removed");
+    let message = workshop.fails(
+        &[
+            "render",
+            "scene.toml",
+            "-o",
+            "a.png",
+            "--format",
+            "sprites",
+            "--size",
+            "16384x16384",
+            "--frames",
+            "1",
+        ],
+        1,
+    );
+    assert!(message.contains("--size"), "{message}");
+    assert_eq!(workshop.listing(), before);
+    workshop.succeeds(&["render", "scene.toml", "-o", "a.png", "--format", "sprites"]);
+    let table: serde_json::Value = serde_json::from_slice(&bytes(&workshop, "a.json")).expect("JSON");
+    assert_eq!(table["frames"].as_array().expect("an array").len(), 12);
+    assert_eq!(table["meta"]["image"], "a.png");
+    assert!(workshop.path("a.png").is_file());
+}
+
+#[test]
+fn the_background_is_any_colour() {
+    let workshop = two();
+    let corner = |colour: &str| {
+        workshop.succeeds(&[
+            "frame",
+            "scene.toml",
+            "--at",
+            "0,0",
+            "-o",
+            "a.png",
+            "--background",
+            colour,
+        ]);
+        workshop.succeeds(&[
+            "render",
+            "scene.toml",
+            "-o",
+            "f",
+            "--frames",
+            "1",
+            "--background",
+            colour,
+        ]);
+        let frames = std::fs::read_dir(workshop.path("f")).expect("a folder");
+        let frame = frames
+            .map(|entry| entry.expect("an entry").path())
+            .next()
+            .expect("a frame");
+        let [one, other] = [workshop.path("a.png"), frame].map(|p| image::open(p).expect("a picture").to_rgba8());
+        assert_eq!(one.get_pixel(0, 0), other.get_pixel(0, 0));
+        one.get_pixel(0, 0).0
+    };
+    assert_eq!(corner("#0a141e"), [10, 20, 30, 255]);
+    assert_eq!(corner("transparent"), [0; 4]);
+    let message = workshop.fails(&["render", "scene.toml", "-o", "f", "--background", "red"], 2);
+    assert!(message.contains("#rrggbb"), "{message}");
 }

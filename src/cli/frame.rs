@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use inbetween::export::png_bytes;
 use inbetween::pipeline::{Character, checked_weights, laid_out};
-use inbetween::scene::Scene;
+use inbetween::scene::{Background, Scene};
 
 use super::output::Output;
-use super::values::{Grid, Numbers};
+use super::values::{Grid, Numbers, background};
 use super::{Failure, Verbosity};
 
 /// Render one frame of a scene
@@ -41,6 +41,9 @@ pub(crate) struct Arguments {
     /// Columns and rows, such as 1920x1080; the scene's otherwise
     #[arg(long, value_name = "WxH")]
     size: Option<Grid>,
+    /// What is behind the character: transparent, white, black, #rrggbb or #rrggbbaa; the scene's otherwise
+    #[arg(long, value_name = "COLOUR", value_parser = background)]
+    background: Option<Background>,
 }
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
@@ -60,7 +63,10 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     }
     let output = Output::open(&arguments.output)?;
     let file = scene.file.display().to_string();
-    let scene = laid_out(scene).context(file)?;
+    let mut scene = laid_out(scene).context(file)?;
+    if let Some(background) = arguments.background {
+        scene.animation.background = background;
+    }
     let size = arguments
         .size
         .map_or(scene.animation.size.map(|side| side as usize), |grid| grid.0);

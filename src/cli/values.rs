@@ -1,5 +1,7 @@
 //! Values as they are written on the command line.
 
+use inbetween::scene::Background;
+
 /// Numbers separated by commas: a place, or weights.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Numbers(pub(crate) Vec<f64>);
@@ -41,9 +43,16 @@ impl std::str::FromStr for Grid {
     }
 }
 
-/// Frame numbers from 1: `1-10,20`.
+/// Frame numbers from 1: `1-10,20`, or every third of some by `1-10:3`.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct FrameNumbers(Vec<std::ops::RangeInclusive<usize>>);
+pub(crate) struct FrameNumbers(Vec<Stretch>);
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Stretch {
+    first: usize,
+    last: usize,
+    step: usize,
+}
 
 impl std::str::FromStr for FrameNumbers {
     type Err = String;
@@ -51,27 +60,44 @@ impl std::str::FromStr for FrameNumbers {
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || format!("'{text}' is no list of frame numbers from 1, such as 1-10,20");
         let number = |word: &str| word.trim().parse::<usize>().ok().filter(|n| *n >= 1).ok_or_else(wrong);
-        text.split(',')
-            .map(|word| match word.split_once('-') {
-                Some((first, last)) => Ok(number(first)?..=number(last)?),
-                None => number(word).map(|n| n..=n),
-            })
-            .map(|range| range.and_then(|r| if r.is_empty() { Err(wrong()) } else { Ok(r) }))
-            .collect::<Result<_, _>>()
-            .map(Self)
+        let stretch = |word: &str| -> Result<Stretch, String> {
+            let (ends, step) = match word.split_once(':') {
+                Some((ends, step)) => (ends, number(step)?),
+                None => (word, 1),
+            };
+            let (first, last) = match ends.split_once('-') {
+                Some((first, last)) => (number(first)?, number(last)?),
+                None => (number(ends)?, number(ends)?),
+            };
+            if first > last {
+                return Err(wrong());
+            }
+            Ok(Stretch { first, last, step })
+        };
+        text.split(',').map(stretch).collect::<Result<_, _>>().map(Self)
     }
 }
 
 impl FrameNumbers {
     /// The numbers in order, each once; an error if one is beyond `count`.
     pub(crate) fn within(&self, count: usize) -> Result<Vec<usize>, String> {
-        if let Some(beyond) = self.0.iter().map(|r| *r.end()).find(|n| *n > count) {
+        if let Some(beyond) = self.0.iter().map(|stretch| stretch.last).find(|n| *n > count) {
             return Err(format!(
                 "frame {beyond} does not exist: the animation has {count} frames"
             ));
         }
-        Ok((1..=count).filter(|n| self.0.iter().any(|r| r.contains(n))).collect())
+        let asked_for = |n: usize| {
+            let within = |s: &Stretch| (s.first..=s.last).contains(&n) && (n - s.first).is_multiple_of(s.step);
+            self.0.iter().any(within)
+        };
+        Ok((1..=count).filter(|n| asked_for(*n)).collect())
     }
+}
+
+/// What is behind the character.
+pub(crate) fn background(text: &str) -> Result<Background, String> {
+    text.parse()
+        .map_err(|allowed| format!("'{text}' is no background; write {allowed}"))
 }
 
 /// Frames a second.
@@ -99,7 +125,9 @@ mod tests {
         let numbers: FrameNumbers = "20,3-5,4".parse().expect("numbers");
         assert_eq!(numbers.within(20), Ok(vec![3, 4, 5, 20]));
         assert!(numbers.within(19).is_err());
-        for wrong in ["", "0", "5-3", "a", "1-"] {
+        let numbers: FrameNumbers = "1-9:3,2".parse().expect("numbers");
+        assert_eq!(numbers.within(9), Ok(vec![1, 2, 4, 7]));
+        for wrong in ["", "0", "5-3", "a", "1-", "1-5:0", "1-5:"] {
             assert!(wrong.parse::<FrameNumbers>().is_err(), "{wrong}");
         }
     }

@@ -1,10 +1,13 @@
 //! Animated PNG: full colour and alpha.
 //!
-//! Every frame but the first is cut to what is drawn and cleared before the next.
+//! Every frame but the first is cut to what changed, and replaces it. A rate that does not fit the format's fractions
+//! is shown in whole milliseconds that add up.
 
 use std::path::PathBuf;
 
-use super::{ExportError, PendingFile, Repetition, box_of};
+use super::changes::Changes;
+use super::timing::Rate;
+use super::{ExportError, PendingFile, Repetition};
 use crate::render::Frame;
 
 /// Writes an APNG frame by frame. All frames have one size.
@@ -13,7 +16,9 @@ pub struct ApngWriter {
     file: std::rc::Rc<std::cell::RefCell<PendingFile>>,
     target: PathBuf,
     size: [usize; 2],
-    is_first: bool,
+    rate: Rate,
+    count: u64,
+    changes: Changes,
 }
 
 impl std::fmt::Debug for ApngWriter {
@@ -61,9 +66,10 @@ impl ApngWriter {
             Repetition::Forever => 0,
         };
         encoder.set_animated(count as u32, plays).map_err(failed)?;
-        let (numerator, denominator) = delay(fps);
+        let rate = Rate::of(fps);
+        let (numerator, denominator) = delay(rate, 0);
         encoder.set_frame_delay(numerator, denominator).map_err(failed)?;
-        encoder.set_dispose_op(png::DisposeOp::Background).map_err(failed)?;
+        encoder.set_dispose_op(png::DisposeOp::None).map_err(failed)?;
         encoder.set_blend_op(png::BlendOp::Source).map_err(failed)?;
         let writer = encoder.write_header().map_err(failed)?;
         Ok(Self {
@@ -71,7 +77,9 @@ impl ApngWriter {
             file,
             target,
             size,
-            is_first: true,
+            rate,
+            count: 0,
+            changes: Changes::default(),
         })
     }
 
@@ -86,23 +94,16 @@ impl ApngWriter {
                 reason: "all frames of an APNG have one size".to_owned(),
             });
         }
-        let straight = frame.straight();
-        let drawn = if self.is_first {
-            // The format wants the first frame whole.
-            [0, 0, frame.width, frame.height]
-        } else {
-            box_of(frame.width, frame.height, |i| frame.pixels[i][3] > 0).unwrap_or([0, 0, 1, 1])
-        };
-        self.is_first = false;
-        let [left, top, columns, rows] = drawn;
-        let buffer: Vec<u8> = (top..top + rows)
-            .flat_map(|y| straight[(y * frame.width + left) * 4..][..columns * 4].iter().copied())
-            .collect();
+        let change = self.changes.next(frame, 1);
+        let (numerator, denominator) = delay(self.rate, self.count);
+        self.count += 1;
+        let buffer = change.part.straight();
         let writer = &mut self.writer;
         let write = |writer: &mut png::Writer<PendingFileRef>| {
             writer.reset_frame_position()?;
-            writer.set_frame_dimension(columns as u32, rows as u32)?;
-            writer.set_frame_position(left as u32, top as u32)?;
+            writer.set_frame_dimension(change.part.width as u32, change.part.height as u32)?;
+            writer.set_frame_position(change.left as u32, change.top as u32)?;
+            writer.set_frame_delay(numerator, denominator)?;
             writer.write_image_data(&buffer)
         };
         write(writer).map_err(|error| ExportError::cannot_write(&self.target, error))
@@ -126,19 +127,16 @@ impl ApngWriter {
     }
 }
 
-/// The time a frame is shown, as a fraction of seconds in 16 bits.
-fn delay(fps: f64) -> (u16, u16) {
-    for numerator in [1.0, 1001.0, 1000.0, 100.0, 10.0] {
-        let denominator = numerator * fps;
-        if denominator.round() <= f64::from(u16::MAX) && (denominator - denominator.round()).abs() < 1e-6 * denominator
-        {
-            return (numerator as u16, denominator.round() as u16);
+/// The time frame `index` is shown, as a fraction of seconds in 16 bits.
+fn delay(rate: Rate, index: u64) -> (u16, u16) {
+    /// Ticks a second where the rate's own fraction is too long.
+    const TICKS: u16 = 1000;
+    match (u16::try_from(rate.seconds), u16::try_from(rate.frames)) {
+        (Ok(seconds), Ok(frames)) => (seconds, frames),
+        _ => {
+            let shown = rate.ticks_of(index, u32::from(TICKS)).min(u64::from(u16::MAX));
+            (shown as u16, TICKS)
         }
-    }
-    if fps >= 1.0 {
-        (10, (10.0 * fps).round() as u16)
-    } else {
-        ((1000.0 / fps).round().min(f64::from(u16::MAX)) as u16, 1000)
     }
 }
 
@@ -183,9 +181,12 @@ mod tests {
     }
 
     #[test]
-    fn delays_are_exact_where_they_can_be() {
-        assert_eq!(delay(24.0), (1, 24));
-        assert_eq!(delay(24000.0 / 1001.0), (1001, 24000));
-        assert_eq!(delay(0.5), (1000, 500));
+    fn delays_are_exact_where_they_can_be_and_add_up_where_not() {
+        assert_eq!(delay(Rate::of(24.0), 7), (1, 24));
+        assert_eq!(delay(Rate::of(23.976), 7), (1001, 24000));
+        assert_eq!(delay(Rate::of(0.5), 0), (2, 1));
+        let odd = Rate::of(17.123_457);
+        let total: u32 = (0..171).map(|k| u32::from(delay(odd, k).0)).sum();
+        assert_eq!(total, 9986);
     }
 }

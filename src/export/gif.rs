@@ -1,11 +1,12 @@
 //! Animated GIF.
 //!
 //! In front of nothing each frame is cut to what is drawn and cleared before the next, so that no frame shows through;
-//! in front of a colour only what changed is drawn over the last frame. Times are whole hundredths of a second, spread
-//! so that no frame is late by more than half of one.
+//! in front of a colour only what changed is drawn over the last frame. Times are whole hundredths of a second that add
+//! up; colours are those of one [`Palette`], dithered.
 
 use std::path::Path;
 
+use super::timing::Rate;
 use super::{ExportError, Palette, PendingFile, Repetition, box_of};
 use crate::render::Frame;
 
@@ -28,7 +29,7 @@ pub struct GifWriter {
     palette: Palette,
     backdrop: Backdrop,
     size: [u16; 2],
-    fps: f64,
+    rate: Rate,
     /// How many frames were added.
     count: u64,
     /// The last frame, in front of a colour.
@@ -45,6 +46,9 @@ impl std::fmt::Debug for GifWriter {
 }
 
 impl GifWriter {
+    /// Frames a second that players still show at their pace; at a higher rate the animation takes longer.
+    pub const FASTEST: f64 = 100.0 / SHORTEST as f64;
+
     /// A GIF of `size` (columns, rows) at `fps` frames a second.
     ///
     /// # Errors
@@ -77,7 +81,7 @@ impl GifWriter {
             palette,
             backdrop,
             size: [width, height],
-            fps,
+            rate: Rate::of(fps),
             count: 0,
             last: None,
         })
@@ -116,7 +120,7 @@ impl GifWriter {
         let buffer: Vec<u8> = (top..top + rows)
             .flat_map(|y| indices[y * width + left..][..columns].iter().copied())
             .collect();
-        let delay = hundredths(self.count, self.fps);
+        let delay = hundredths(self.count, self.rate);
         let frame = gif::Frame {
             delay,
             dispose: match self.backdrop {
@@ -158,10 +162,9 @@ impl GifWriter {
     }
 }
 
-/// How long frame `index` is shown, so that frame n starts within half a hundredth of n / fps.
-fn hundredths(index: u64, fps: f64) -> u16 {
-    let start = |k: u64| (k as f64 * 100.0 / fps).round() as u64;
-    (start(index + 1) - start(index)).clamp(SHORTEST, u64::from(u16::MAX)) as u16
+/// How long frame `index` is shown.
+fn hundredths(index: u64, rate: Rate) -> u16 {
+    rate.ticks_of(index, 100).clamp(SHORTEST, u64::from(u16::MAX)) as u16
 }
 
 #[cfg(test)]
@@ -226,8 +229,8 @@ mod tests {
 
     #[test]
     fn times_add_up() {
-        let total: u64 = (0..24).map(|k| u64::from(hundredths(k, 24.0))).sum();
+        let total: u64 = (0..24).map(|k| u64::from(hundredths(k, Rate::of(24.0)))).sum();
         assert_eq!(total, 100);
-        assert_eq!(hundredths(0, 1000.0), 2);
+        assert_eq!(hundredths(0, Rate::of(1000.0)), 2);
     }
 }

@@ -1,23 +1,31 @@
-//! Writers, one a format: PNG, PNG sequences, GIF, APNG.
+//! Writers, one a format: PNG, PNG sequences, GIF, APNG, WebP, sprite sheets; MP4 and WebM by way of ffmpeg.
 //!
 //! Every file is written under a temporary name beside its target and renamed when it is complete
 //! ([`PendingFile`]), so a run that is killed leaves no torn file, and a run that fails leaves none at all.
 
 mod apng;
+mod changes;
+mod ffmpeg;
 mod gif;
 mod keys;
 mod palette;
 mod pending;
 mod png;
 mod sequence;
+mod sprites;
+mod timing;
+mod webp;
 
 pub use apng::ApngWriter;
+pub use ffmpeg::{VideoKind, VideoWriter};
 pub use gif::{Backdrop, GifWriter};
 pub use keys::{Keys, place_keys};
-pub use palette::Palette;
+pub use palette::{ColourCount, Palette};
 pub use pending::PendingFile;
-pub use png::png_bytes;
+pub use png::{Label, png_bytes, png_bytes_with};
 pub use sequence::Sequence;
+pub use sprites::SpriteSheet;
+pub use webp::WebPWriter;
 
 use std::path::{Path, PathBuf};
 
@@ -26,11 +34,19 @@ use std::path::{Path, PathBuf};
 #[non_exhaustive]
 pub enum ExportError {
     /// The system refuses.
-    #[error("cannot write {}: {reason}; choose a place that exists and that you may write to", path.display())]
+    #[error("cannot write {}: {reason}; choose a place that exists, has room and that you may write to", path.display())]
     CannotWrite {
         /// The file or folder.
         path: PathBuf,
         /// The system's reason.
+        reason: String,
+    },
+    /// Another program that is needed for it is missing or failed.
+    #[error("cannot write {}: {reason}", path.display())]
+    Program {
+        /// The file.
+        path: PathBuf,
+        /// What happened, and what to do.
         reason: String,
     },
     /// The format cannot hold it.

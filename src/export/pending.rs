@@ -1,14 +1,21 @@
 //! A file that appears whole or not at all.
 
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
 use super::ExportError;
 
+/// How the names of temporary files begin and end.
+const PREFIX: &str = ".inbetween-";
+const SUFFIX: &str = ".part";
+
 /// A file under a temporary name beside its target. Dropped without [`PendingFile::commit`], it vanishes.
+///
+/// The temporary file is locked as long as it is written. One without a lock was left by a process that was killed:
+/// [`PendingFile::create`] removes such files beside its own.
 #[derive(Debug)]
 pub struct PendingFile {
     temporary: BufWriter<NamedTempFile>,
@@ -21,23 +28,33 @@ impl PendingFile {
     /// # Errors
     /// [`ExportError`] if the folder does not exist or cannot be written to, or if the target is a folder.
     pub fn create(target: &Path) -> Result<Self, ExportError> {
+        remove_abandoned(folder_of(target));
+        Self::create_among_others(target)
+    }
+
+    /// The same where files that were left behind have been removed already.
+    pub(super) fn create_among_others(target: &Path) -> Result<Self, ExportError> {
         if target.is_dir() {
             return Err(ExportError::cannot_write(target, "it is a folder, but a file is meant"));
         }
-        let folder = match target.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
         if target.file_name().is_none() {
             return Err(ExportError::cannot_write(target, "it names no file"));
         }
-        let temporary = builder()
-            .tempfile_in(folder)
-            .map_err(|error| ExportError::cannot_write(target, error))?;
-        Ok(Self {
-            temporary: BufWriter::new(temporary),
-            target: target.to_owned(),
-        })
+        loop {
+            let temporary = builder()
+                .tempfile_in(folder_of(target))
+                .map_err(|error| ExportError::cannot_write(target, error))?;
+            // Where the system has no locks, nobody takes the file for a forgotten one either.
+            let locked = temporary.as_file().lock();
+            // Before it was locked, another process may have taken it for a forgotten one.
+            if locked.is_ok() && !temporary.path().exists() {
+                continue;
+            }
+            return Ok(Self {
+                temporary: BufWriter::new(temporary),
+                target: target.to_owned(),
+            });
+        }
     }
 
     /// The path the file will have.
@@ -46,19 +63,42 @@ impl PendingFile {
         &self.target
     }
 
+    /// The path it has until then, for another program to write to.
+    pub(super) fn temporary_path(&self) -> &Path {
+        self.temporary.get_ref().path()
+    }
+
     /// Flushes, and renames the file to its target, replacing what is there.
     ///
     /// # Errors
     /// [`ExportError`] if the system refuses; the temporary file is removed.
     pub fn commit(self) -> Result<(), ExportError> {
-        let temporary = self
-            .temporary
-            .into_inner()
-            .map_err(|error| ExportError::cannot_write(&self.target, error.error()))?;
-        temporary
-            .persist(&self.target)
-            .map(|_: File| ())
-            .map_err(|error| ExportError::cannot_write(&self.target, error.error))
+        Self::commit_all([self])
+    }
+
+    /// Commits files that belong together: none gets its name before all are written.
+    ///
+    /// # Errors
+    /// [`ExportError`] if the system refuses; then none of them is there.
+    pub fn commit_all(files: impl IntoIterator<Item = Self>) -> Result<(), ExportError> {
+        let flushed = |file: Self| -> Result<(NamedTempFile, PathBuf), ExportError> {
+            match file.temporary.into_inner() {
+                Ok(temporary) => Ok((temporary, file.target)),
+                Err(error) => Err(ExportError::cannot_write(&file.target, error.error())),
+            }
+        };
+        let files = files.into_iter().map(flushed).collect::<Result<Vec<_>, _>>()?;
+        let mut named: Vec<PathBuf> = Vec::new();
+        for (temporary, target) in files {
+            if let Err(error) = temporary.persist(&target) {
+                for other in named {
+                    let _ = std::fs::remove_file(other);
+                }
+                return Err(ExportError::cannot_write(&target, error.error));
+            }
+            named.push(target);
+        }
+        Ok(())
     }
 
     /// Writes `bytes` as a whole file.
@@ -66,11 +106,14 @@ impl PendingFile {
     /// # Errors
     /// [`ExportError`] if the system refuses.
     pub fn write_whole(target: &Path, bytes: &[u8]) -> Result<(), ExportError> {
-        let mut pending = Self::create(target)?;
-        pending
-            .write_all(bytes)
-            .map_err(|error| ExportError::cannot_write(target, error))?;
-        pending.commit()
+        Self::create(target)?.fill(bytes)
+    }
+
+    /// Writes `bytes` and commits.
+    pub(super) fn fill(mut self, bytes: &[u8]) -> Result<(), ExportError> {
+        self.write_all(bytes)
+            .map_err(|error| ExportError::cannot_write(&self.target, error))?;
+        self.commit()
     }
 }
 
@@ -84,10 +127,43 @@ impl Write for PendingFile {
     }
 }
 
+impl Seek for PendingFile {
+    fn seek(&mut self, place: SeekFrom) -> std::io::Result<u64> {
+        self.temporary.seek(place)
+    }
+}
+
+fn folder_of(target: &Path) -> &Path {
+    match target.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// Removes the temporary files in `folder` that nobody is writing any more.
+pub(super) fn remove_abandoned(folder: &Path) {
+    // What cannot be read or removed is left alone: it is in nobody's way.
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let is_ours = name
+            .to_str()
+            .is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
+        if !is_ours || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
+            continue;
+        }
+        if let Ok(file) = File::options().write(true).open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
 /// Names that say what they are; the permissions any new file would have (temporary files are private by default).
 fn builder() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".inbetween-").suffix(".part");
+    builder.prefix(PREFIX).suffix(SUFFIX);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
@@ -111,6 +187,31 @@ mod tests {
         PendingFile::write_whole(&target, b"whole").expect("written");
         PendingFile::write_whole(&target, b"again").expect("replaced");
         assert_eq!(std::fs::read(&target).expect("there"), b"again");
+        assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1);
+    }
+
+    #[test]
+    fn what_a_killed_process_left_is_removed_and_what_another_writes_is_not() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let left = folder.path().join(".inbetween-abc.part");
+        std::fs::write(&left, b"half").expect("written");
+        std::fs::write(folder.path().join("other.part"), b"not ours").expect("written");
+        let mut first = PendingFile::create(&folder.path().join("a")).expect("writable");
+        assert!(!left.exists());
+        PendingFile::write_whole(&folder.path().join("b"), b"b").expect("written");
+        first.write_all(b"a").expect("written");
+        first.commit().expect("still there");
+        assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 3);
+    }
+
+    #[test]
+    fn files_that_belong_together_appear_together() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let [one, two] = ["one", "two"].map(|name| folder.path().join(name));
+        let pending = [&one, &two].map(|target| PendingFile::create(target).expect("writable"));
+        std::fs::create_dir(&two).expect("a folder in the way");
+        PendingFile::commit_all(pending).expect_err("a folder is in the way");
+        assert!(!one.exists());
         assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1);
     }
 

@@ -1,17 +1,78 @@
 //! One picture as PNG.
 
+use std::fs::File;
+use std::io::{Read as _, Seek as _, SeekFrom};
+use std::path::Path;
+
 use crate::render::Frame;
+
+/// The word before a [`Label`] in a PNG file.
+const KEYWORD: &str = "inbetween";
+/// How much of a file is searched for a label: it stands right behind the header.
+const SEARCHED: u64 = 4096;
+/// The chunk that ends a PNG file.
+const END: [u8; 12] = [0, 0, 0, 0, b'I', b'E', b'N', b'D', 0xae, 0x42, 0x60, 0x82];
+
+/// What a frame was made from, in as many letters as it takes to tell it from all others: a hash. Kept inside the PNG file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Label(String);
+
+impl Label {
+    /// A label of letters, digits and spaces; other characters are left out.
+    #[must_use]
+    pub fn new(text: &str) -> Self {
+        Self(
+            text.chars()
+                .filter(|c| c.is_ascii_alphanumeric() || *c == ' ')
+                .collect(),
+        )
+    }
+
+    /// Whether there is a whole PNG file with this label at `path`.
+    #[must_use]
+    pub fn is_on(&self, path: &Path) -> bool {
+        let read = || -> std::io::Result<bool> {
+            let mut file = File::open(path)?;
+            let mut start = Vec::new();
+            file.by_ref().take(SEARCHED).read_to_end(&mut start)?;
+            let mut end = [0; END.len()];
+            file.seek(SeekFrom::End(-(END.len() as i64)))?;
+            file.read_exact(&mut end)?;
+            let wanted = [KEYWORD.as_bytes(), b"\0", self.0.as_bytes()].concat();
+            let chunk = [&(wanted.len() as u32).to_be_bytes(), b"tEXt".as_slice(), &wanted].concat();
+            Ok(end == END && start.windows(chunk.len()).any(|bytes| bytes == chunk))
+        };
+        read().unwrap_or(false)
+    }
+}
 
 /// The bytes of an 8-bit RGBA PNG file (sRGB colours, alpha not multiplied in).
 ///
 /// # Errors
 /// The encoder's message, for a picture without pixels.
 pub fn png_bytes(frame: &Frame) -> Result<Vec<u8>, String> {
+    encoded(frame, None)
+}
+
+/// The same with a label inside.
+///
+/// # Errors
+/// As [`png_bytes`].
+pub fn png_bytes_with(frame: &Frame, label: &Label) -> Result<Vec<u8>, String> {
+    encoded(frame, Some(label))
+}
+
+fn encoded(frame: &Frame, label: Option<&Label>) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, frame.width as u32, frame.height as u32);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Balanced);
+    if let Some(Label(text)) = label {
+        encoder
+            .add_text_chunk(KEYWORD.to_owned(), text.clone())
+            .map_err(|error| error.to_string())?;
+    }
     let mut writer = encoder.write_header().map_err(|error| error.to_string())?;
     writer
         .write_image_data(&frame.straight())
@@ -34,5 +95,21 @@ mod tests {
         assert_eq!(image.get_pixel(1, 1).0, [199, 100, 0, 128]);
         assert_eq!(image.get_pixel(0, 0).0, [0; 4]);
         assert!(png_bytes(&Frame::filled(0, 2, [0; 4])).is_err());
+    }
+
+    #[test]
+    fn a_label_is_found_on_whole_files_only() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.png");
+        let (label, other) = (Label::new("0123abcd"), Label::new("0123abce"));
+        assert!(!label.is_on(&path));
+        let bytes = png_bytes_with(&Frame::filled(30, 20, [1, 2, 3, 255]), &label).expect("a picture");
+        std::fs::write(&path, &bytes).expect("written");
+        assert!(label.is_on(&path) && !other.is_on(&path) && !Label::new("0123").is_on(&path));
+        assert!(image::load_from_memory(&bytes).is_ok());
+        for length in [bytes.len() - 1, bytes.len() / 2, 10, 0] {
+            std::fs::write(&path, &bytes[..length]).expect("written");
+            assert!(!label.is_on(&path), "{length}");
+        }
     }
 }

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{ExportError, PendingFile, png_bytes};
+use super::pending::remove_abandoned;
+use super::{ExportError, Label, PendingFile, png_bytes_with};
 use crate::render::Frame;
 
 /// A folder of files `NAME.0001.png`, `NAME.0002.png`, ...
@@ -27,7 +28,8 @@ impl Sequence {
             name: name.to_owned(),
             is_new,
         };
-        PendingFile::create(&sequence.path(1))?;
+        remove_abandoned(folder);
+        PendingFile::create_among_others(&sequence.path(1))?;
         Ok(sequence)
     }
 
@@ -37,17 +39,23 @@ impl Sequence {
         self.folder.join(format!("{}.{number:04}.png", self.name))
     }
 
-    /// Writes frame `number`, counted from 1. Frames may be written in any order and from any thread.
+    /// Whether the file of frame `number` is there, whole and with this label.
+    #[must_use]
+    pub fn has(&self, number: usize, label: &Label) -> bool {
+        label.is_on(&self.path(number))
+    }
+
+    /// Writes frame `number`, counted from 1, with a label inside. Frames may be written in any order and from any thread.
     ///
     /// # Errors
     /// [`ExportError`] if the system refuses.
-    pub fn write(&self, number: usize, frame: &Frame) -> Result<(), ExportError> {
+    pub fn write(&self, number: usize, frame: &Frame, label: &Label) -> Result<(), ExportError> {
         let path = self.path(number);
-        let bytes = png_bytes(frame).map_err(|reason| ExportError::Unsuitable {
+        let bytes = png_bytes_with(frame, label).map_err(|reason| ExportError::Unsuitable {
             path: path.clone(),
             reason,
         })?;
-        PendingFile::write_whole(&path, &bytes)
+        PendingFile::create_among_others(&path)?.fill(&bytes)
     }
 }
 
@@ -72,10 +80,11 @@ mod tests {
         assert!(!inner.exists());
         let sequence = Sequence::create(&inner, "cat").expect("writable");
         sequence
-            .write(7, &Frame::filled(2, 2, [1, 2, 3, 255]))
+            .write(7, &Frame::filled(2, 2, [1, 2, 3, 255]), &Label::new("a"))
             .expect("written");
         drop(sequence);
         assert!(inner.join("cat.0007.png").is_file());
+        std::fs::write(inner.join(".inbetween-x.part"), b"left behind").expect("written");
         drop(Sequence::create(&inner, "cat").expect("writable"));
         assert_eq!(std::fs::read_dir(&inner).expect("a folder").count(), 1);
     }

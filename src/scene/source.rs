@@ -25,6 +25,15 @@ pub(super) fn leaves_folder(source: &str) -> Option<&'static str> {
 }
 
 impl Scene {
+    /// Every file that the scene is read from besides its own, in an order that depends on the scene file alone.
+    ///
+    /// # Errors
+    /// As [`Self::source_path`].
+    pub fn source_files(&self) -> Result<Vec<PathBuf>, SceneError> {
+        let drawn = self.drawn_poses();
+        drawn.into_iter().map(|pose| self.source_path(pose)).collect()
+    }
+
     /// The path of the drawing that pose `index` shows, with every symbolic link resolved.
     ///
     /// # Errors

@@ -1,25 +1,27 @@
 //! An animated GIF.
 
-use inbetween::export::{Backdrop, GifWriter, Palette, PendingFile};
-use inbetween::scene::Background;
+use inbetween::export::{Backdrop, ColourCount, GifWriter, Palette, PendingFile};
+use inbetween::pipeline::Character;
+use inbetween::scene::{Animation, Background};
 
 use super::job::Job;
 use crate::cli::frames;
 
 /// How many frames, spread over the animation, the colours are chosen from.
-const PALETTE_FRAMES: usize = 8;
+const PALETTE_FRAMES: usize = 32;
 
 pub(super) fn run(job: Job<'_>) -> anyhow::Result<()> {
     let file = PendingFile::create(job.output)?;
     let character = job.character()?;
-    let progress = job.progress();
     let animation = job.animation();
-    // From the whole animation, whichever frames are asked for: their pixels must not depend on that.
-    let count = animation.frame_count();
-    let looked_at: Vec<usize> = (0..PALETTE_FRAMES.min(count))
-        .map(|k| 1 + k * count / PALETTE_FRAMES.min(count))
-        .collect();
-    let palette = Palette::for_frames(&frames::batch_of(&character, animation, &looked_at)?);
+    if animation.fps > GifWriter::FASTEST {
+        job.verbosity.note(&format!(
+            "note: a GIF shows at most {} frames a second, so it will play slower than it should; choose a lower --fps",
+            GifWriter::FASTEST
+        ));
+    }
+    let palette = palette(&character, animation)?;
+    let progress = job.progress();
     let backdrop = match animation.background {
         Background::Colour([_, _, _, 255]) => Backdrop::Opaque,
         _ => Backdrop::Clear,
@@ -30,4 +32,18 @@ pub(super) fn run(job: Job<'_>) -> anyhow::Result<()> {
     })?;
     writer.finish()?;
     job.done(&character, &progress)
+}
+
+/// Colours from the whole animation, whichever frames are asked for: their pixels must not depend on that.
+fn palette(character: &Character, animation: &Animation) -> anyhow::Result<Palette> {
+    let count = animation.frame_count();
+    let looked_at = PALETTE_FRAMES.min(count);
+    let numbers: Vec<usize> = (0..looked_at).map(|k| 1 + k * count / looked_at).collect();
+    let mut colours = ColourCount::default();
+    for batch in numbers.chunks(rayon::current_num_threads()) {
+        for frame in frames::batch_of(character, animation, batch)? {
+            colours.add(&frame);
+        }
+    }
+    Ok(Palette::new(&colours))
 }

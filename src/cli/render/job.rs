@@ -9,7 +9,7 @@ use inbetween::scene::{Animation, Scene};
 
 use crate::cli::Verbosity;
 use crate::cli::frames;
-use crate::cli::progress::Progress;
+use crate::cli::progress::{Progress, ProgressKind};
 
 /// A scene, the frames that are wanted of it, and where they go.
 pub(super) struct Job<'a> {
@@ -21,6 +21,8 @@ pub(super) struct Job<'a> {
     pub(super) numbers: Vec<usize>,
     /// Whether frames that are there already are left out.
     pub(super) resume: bool,
+    /// How progress is told.
+    pub(super) progress: ProgressKind,
     /// What is told.
     pub(super) verbosity: Verbosity,
 }
@@ -57,7 +59,7 @@ impl Job<'_> {
 
     /// Progress over the frames that are wanted.
     pub(super) fn progress(&self) -> Progress {
-        Progress::new(self.numbers.len(), self.verbosity)
+        Progress::new(self.numbers.len(), self.progress, self.verbosity)
     }
 
     /// Ends the progress, and tells what there is to tell about the frames.

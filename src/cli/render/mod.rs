@@ -1,39 +1,48 @@
 //! `inbetween render`: its arguments, and which file writes which kind of output.
 
 mod apng;
+mod fingerprint;
 mod format;
 mod gif;
 mod job;
 mod sequence;
+mod sprites;
+mod video;
+mod webp;
 
 use std::path::PathBuf;
 
 use anyhow::Context as _;
 use inbetween::pipeline::laid_out;
-use inbetween::scene::Scene;
+use inbetween::scene::{Background, Scene};
 
 use self::format::Format;
 use self::job::Job;
-use super::values::{FrameNumbers, Grid, frame_rate, thread_count};
+use super::progress::ProgressKind;
+use super::values::{FrameNumbers, Grid, background, frame_rate, thread_count};
 use super::{Failure, Verbosity};
 
 /// Render the animation of a scene
 ///
-/// The kind of output is taken from OUT's name: a folder gets numbered PNG files NAME.0001.png, a name ending in .gif
-/// or .apng that one file. Any subset of frames has the same bytes as in a whole run, for any number of threads.
+/// The kind of output is taken from OUT's name: a folder gets numbered PNG files NAME.0001.png, a name ending in .gif,
+/// .apng, .webp, .mp4 or .webm that one file (the last two need the program ffmpeg). Any subset of frames has the same
+/// bytes as in a whole run, for any number of threads. Files appear when they are complete; a run that is killed or
+/// fails leaves none that is torn.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   inbetween render walker/scene.toml -o walker.gif
-  inbetween render walker/scene.toml -o frames --size 1920x1080 --fps 30
+  inbetween render walker/scene.toml -o walker.webm --size 1920x1080 --fps 30
+  inbetween render walker/scene.toml -o walker.png --format sprites --size 240x270 --fps 12
   inbetween render walker/scene.toml -o frames --frames 101-200 --threads 8 --resume   one share of a render farm")]
 pub(crate) struct Arguments {
     /// The scene file
     scene: PathBuf,
-    /// A folder, or a file ending in .gif or .apng
+    /// A folder, or a file ending in .gif, .apng, .webp, .mp4 or .webm
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// The kind of output, where the name does not say: png (a folder), gif or apng
+    /// The kind of output, where the name does not say: png (a folder), sprites (a .png with a .json beside it), gif,
+    /// apng, webp, mp4 or webm
     #[arg(long, value_name = "FORMAT")]
     format: Option<String>,
     /// Only these frames, counted from 1, such as 1-10,20
@@ -45,12 +54,18 @@ pub(crate) struct Arguments {
     /// Frames a second; the scene's otherwise
     #[arg(long, value_parser = frame_rate)]
     fps: Option<f64>,
+    /// What is behind the character: transparent, white, black, #rrggbb or #rrggbbaa; the scene's otherwise
+    #[arg(long, value_name = "COLOUR", value_parser = background)]
+    background: Option<Background>,
     /// How many threads; as many as there are cores otherwise
     #[arg(long, value_name = "N", value_parser = thread_count)]
     threads: Option<usize>,
-    /// Leave out frames whose file is already there (folders only)
+    /// Leave out frames whose file is already there, complete, of this scene and these settings (folders only)
     #[arg(long)]
     resume: bool,
+    /// How progress is told
+    #[arg(long, value_name = "KIND", default_value = "auto")]
+    progress: ProgressKind,
 }
 
 /// Writes one kind of output.
@@ -62,16 +77,11 @@ fn writer(format: Format) -> Option<Writer> {
         Format::Png => Some(sequence::run),
         Format::Gif => Some(gif::run),
         Format::Apng => Some(apng::run),
-        Format::WebP
-        | Format::Svg
-        | Format::SvgSequence
-        | Format::Lottie
-        | Format::Glb
-        | Format::Spine
-        | Format::Sprites
-        | Format::Runtime
-        | Format::Mp4
-        | Format::WebM => None,
+        Format::WebP => Some(webp::run),
+        Format::Sprites => Some(sprites::run),
+        Format::Mp4 => Some(video::mp4),
+        Format::WebM => Some(video::webm),
+        Format::Svg | Format::SvgSequence | Format::Lottie | Format::Glb | Format::Spine | Format::Runtime => None,
     }
 }
 
@@ -79,14 +89,14 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     let format = Format::of(&arguments.output, arguments.format.as_deref()).map_err(Failure::Usage)?;
     let Some(write) = writer(format) else {
         return Err(Failure::Usage(format!(
-            "{}: {} is not supported yet; choose a folder (PNG files), .gif or .apng",
+            "{}: {} is not supported yet; choose a folder (PNG files), .gif, .apng, .webp, .mp4, .webm or --format sprites",
             arguments.output.display(),
             format.name()
         )));
     };
     if arguments.resume && !format.is_sequence() {
         return Err(Failure::Usage(
-            "--resume works with a folder of files only; a single file is written whole".to_owned(),
+            "--resume works with a folder of files only; a single file is written whole, so render it again".to_owned(),
         ));
     }
     let scene = Scene::open(&arguments.scene)?;
@@ -97,6 +107,9 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     }
     if let Some(Grid([columns, rows])) = arguments.size {
         scene.animation.size = [columns as u32, rows as u32];
+    }
+    if let Some(background) = arguments.background {
+        scene.animation.background = background;
     }
     let count = scene.animation.frame_count();
     let numbers = match &arguments.frames {
@@ -113,6 +126,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         scene: &scene,
         numbers,
         resume: arguments.resume,
+        progress: arguments.progress,
         verbosity,
     };
     pool.install(|| write(job))?;

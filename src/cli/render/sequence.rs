@@ -3,16 +3,27 @@
 use inbetween::export::Sequence;
 use rayon::prelude::*;
 
+use super::fingerprint::Fingerprint;
 use super::job::Job;
 
 pub(super) fn run(mut job: Job<'_>) -> anyhow::Result<()> {
     let sequence = Sequence::create(job.output, &job.scene.short_name())?;
+    let fingerprint = Fingerprint::of(job.scene)?;
     if job.resume {
-        let before = job.numbers.len();
-        job.numbers.retain(|number| !sequence.path(*number).is_file());
-        let there = before - job.numbers.len();
+        let wanted = job.numbers.len();
+        let there = |number: &usize| sequence.path(*number).exists();
+        let files = job.numbers.iter().filter(|number| there(number)).count();
+        job.numbers
+            .retain(|number| !sequence.has(*number, &fingerprint.label(*number)));
+        let complete = wanted - job.numbers.len();
         job.verbosity
-            .note(&format!("{there} of {before} frames are already there"));
+            .note(&format!("{complete} of {wanted} frames are already there"));
+        if files > complete {
+            job.verbosity.note(&format!(
+                "note: {} files are of another scene, size or version, or not whole, and are rendered again",
+                files - complete
+            ));
+        }
         if job.numbers.is_empty() {
             return Ok(());
         }
@@ -21,7 +32,7 @@ pub(super) fn run(mut job: Job<'_>) -> anyhow::Result<()> {
     let progress = job.progress();
     job.numbers.par_iter().try_for_each(|number| -> anyhow::Result<()> {
         let frame = character.frame(job.animation(), number - 1)?;
-        sequence.write(*number, &frame)?;
+        sequence.write(*number, &frame, &fingerprint.label(*number))?;
         progress.advance();
         Ok(())
     })?;

@@ -84,13 +84,13 @@ impl Reader<'_> {
             animation.size = [columns as u32, rows as u32];
         }
         if let Some(background) = &table.background {
-            animation.background = background_colour(background.get_ref()).ok_or_else(|| {
+            animation.background = background.get_ref().parse().map_err(|allowed| {
                 self.fail(
                     background.span().start,
                     SceneProblem::BadChoice {
                         key: "[animation] background".to_owned(),
                         value: background.get_ref().clone(),
-                        allowed: "'transparent', 'white', 'black', '#rrggbb' or '#rrggbbaa'",
+                        allowed,
                     },
                 )
             })?;
@@ -99,20 +99,27 @@ impl Reader<'_> {
     }
 }
 
-fn background_colour(word: &str) -> Option<Background> {
-    let hex = match word {
-        "transparent" => return Some(Background::Transparent),
-        "white" => "#ffffff",
-        "black" => "#000000",
-        other => other,
+impl std::str::FromStr for Background {
+    /// What may be written.
+    type Err = &'static str;
+
+    fn from_str(word: &str) -> Result<Self, Self::Err> {
+        /// What may be written.
+        const ALLOWED: &str = "'transparent', 'white', 'black', '#rrggbb' or '#rrggbbaa'";
+        let word = match word {
+            "transparent" => return Ok(Self::Transparent),
+            "white" => "#ffffff",
+            "black" => "#000000",
+            other => other,
+        };
+        let hex = word.strip_prefix('#').ok_or(ALLOWED)?;
+        if !hex.bytes().all(|digit| digit.is_ascii_hexdigit()) || !matches!(hex.len(), 6 | 8) {
+            return Err(ALLOWED);
+        }
+        let mut colour = [255; 4];
+        for (k, channel) in colour.iter_mut().enumerate().take(hex.len() / 2) {
+            *channel = u8::from_str_radix(&hex[2 * k..2 * k + 2], 16).map_err(|_| ALLOWED)?;
+        }
+        Ok(Self::Colour(colour))
     }
-    .strip_prefix('#')?;
-    if !hex.is_ascii() || !matches!(hex.len(), 6 | 8) {
-        return None;
-    }
-    let mut colour = [255; 4];
-    for (k, channel) in colour.iter_mut().enumerate().take(hex.len() / 2) {
-        *channel = u8::from_str_radix(&hex[2 * k..2 * k + 2], 16).ok()?;
-    }
-    Some(Background::Colour(colour))
 }

@@ -1,0 +1,48 @@
+//! What a frame depends on, as a short text: by it `--resume` knows which frames are those of this scene.
+//!
+//! A hash (SHA-256) over this program's version, the bytes of the scene file and of every drawing, and what the command line
+//! says about the picture. Where the files lie does not count, so that any computer of a farm can go on with the frames
+//! of another.
+
+use anyhow::Context as _;
+use inbetween::export::Label;
+use inbetween::scene::{Background, Scene};
+use sha2::{Digest as _, Sha256};
+
+/// The hash that all frames of one run share.
+pub(super) struct Fingerprint(Sha256);
+
+impl Fingerprint {
+    /// Reads every file of `scene`, in which what the command line says is in the place of what the file says.
+    pub(super) fn of(scene: &Scene) -> anyhow::Result<Self> {
+        let mut fingerprint = Self(Sha256::new());
+        fingerprint.add(concat!("inbetween ", env!("CARGO_PKG_VERSION")).as_bytes());
+        let sources = scene.source_files()?;
+        for file in std::iter::once(&scene.file).chain(&sources) {
+            let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
+            fingerprint.add(&bytes);
+        }
+        let animation = &scene.animation;
+        fingerprint.add(&animation.fps.to_bits().to_le_bytes());
+        fingerprint.add(&animation.size.map(u32::to_le_bytes).concat());
+        match animation.background {
+            Background::Transparent => fingerprint.add(b"transparent"),
+            Background::Colour(colour) => fingerprint.add(&colour),
+        }
+        Ok(fingerprint)
+    }
+
+    /// What frame `number` carries.
+    pub(super) fn label(&self, number: usize) -> Label {
+        let mut of_frame = Self(self.0.clone());
+        of_frame.add(&number.to_le_bytes());
+        let digits: String = of_frame.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        Label::new(&digits)
+    }
+
+    /// With its length, so that no two lists of parts are the same bytes.
+    fn add(&mut self, part: &[u8]) {
+        self.0.update((part.len() as u64).to_le_bytes());
+        self.0.update(part);
+    }
+}
