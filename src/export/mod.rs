@@ -1,23 +1,29 @@
-//! Writers, one a format: PNG, PNG sequences, GIF, APNG.
+//! Writers, one a format: PNG, PNG sequences, GIF, APNG, SVG, animated SVG, Lottie.
 //!
 //! Every file is written under a temporary name beside its target and renamed when it is complete
 //! ([`PendingFile`]), so a run that is killed leaves no torn file, and a run that fails leaves none at all.
 
 mod apng;
 mod gif;
+mod keyed;
 mod keys;
+mod lottie;
 mod palette;
 mod pending;
 mod png;
 mod sequence;
+mod smil;
+mod svg;
 
 pub use apng::ApngWriter;
 pub use gif::{Backdrop, GifWriter};
+pub use keyed::{KeyOptions, KeyReport, KeyedError, KeyedVector, SampleTiming};
 pub use keys::{Keys, place_keys};
 pub use palette::Palette;
 pub use pending::PendingFile;
 pub use png::png_bytes;
 pub use sequence::Sequence;
+pub use svg::svg_text;
 
 use std::path::{Path, PathBuf};
 
