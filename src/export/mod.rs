@@ -1,4 +1,5 @@
-//! Writers, one a format: PNG, PNG sequences, GIF, APNG, WebP, sprite sheets; MP4 and WebM by way of ffmpeg.
+//! Writers, one a format: PNG, PNG sequences, GIF, APNG, WebP, sprite sheets; MP4 and WebM by way of ffmpeg; SVG, animated SVG,
+//! Lottie; glTF, Spine.
 //!
 //! Every file is written under a temporary name beside its target and renamed when it is complete
 //! ([`PendingFile`]), so a run that is killed leaves no torn file, and a run that fails leaves none at all.
@@ -7,7 +8,9 @@ mod apng;
 mod changes;
 mod ffmpeg;
 mod gif;
+mod keyed;
 mod keys;
+mod lottie;
 mod palette;
 mod pending;
 mod png;
@@ -15,10 +18,13 @@ mod sequence;
 mod sprites;
 mod timing;
 mod webp;
+mod smil;
+mod svg;
 
 pub use apng::ApngWriter;
 pub use ffmpeg::{VideoKind, VideoWriter};
 pub use gif::{Backdrop, GifWriter};
+pub use keyed::{KeyOptions, KeyReport, KeyedError, KeyedVector, SampleTiming};
 pub use keys::{Keys, place_keys};
 pub use palette::{ColourCount, Palette};
 pub use pending::PendingFile;
@@ -26,6 +32,7 @@ pub use png::{Label, png_bytes, png_bytes_with};
 pub use sequence::Sequence;
 pub use sprites::SpriteSheet;
 pub use webp::WebPWriter;
+pub use svg::svg_text;
 
 use std::path::{Path, PathBuf};
 
