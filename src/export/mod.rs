@@ -5,19 +5,25 @@
 
 mod apng;
 mod gif;
+mod gltf;
 mod keys;
 mod palette;
 mod pending;
 mod png;
+mod puppet_motion;
 mod sequence;
+mod spine;
 
 pub use apng::ApngWriter;
 pub use gif::{Backdrop, GifWriter};
+pub use gltf::{LAYER_GAP, PIXELS_A_UNIT, gltf_bytes};
 pub use keys::{Keys, place_keys};
 pub use palette::Palette;
 pub use pending::PendingFile;
 pub use png::png_bytes;
+pub use puppet_motion::{PuppetMotion, PuppetReport};
 pub use sequence::Sequence;
+pub use spine::{SpineFiles, spine_files, write_spine};
 
 use std::path::{Path, PathBuf};
 
