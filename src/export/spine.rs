@@ -189,7 +189,7 @@ fn skeleton(motion: &PuppetMotion<'_>, layers: &[LayerMotion], slots: &[Slot], s
                         .zip(&setup)
                         .map(|(to, from)| rounded(to - from))
                         .collect();
-                    json!({ "time": rounded(motion.times[key]), "vertices": offsets })
+                    json!({ "time": seconds(motion.times[key]), "vertices": offsets })
                 })
                 .collect();
             deforms.insert(slot.name.clone(), json!({ &slot.name: { "deform": keys } }));
@@ -297,6 +297,10 @@ fn rounded(number: f64) -> f64 {
     (number * scale).round() / scale + 0.0
 }
 
+fn seconds(time: f64) -> f64 {
+    (time * 1e6).round() / 1e6 + 0.0
+}
+
 /// The keys of an opacity over time; `None` if the setup pose says it all.
 fn opacity_keys(motion: &PuppetMotion<'_>, opacities: &[f64]) -> Option<Vec<Value>> {
     if opacities.iter().all(|o| *o == 1.0) {
@@ -304,7 +308,7 @@ fn opacity_keys(motion: &PuppetMotion<'_>, opacities: &[f64]) -> Option<Vec<Valu
     }
     let samples: Vec<Vec<Point>> = opacities.iter().map(|o| vec![Point::new(*o, 0.0)]).collect();
     let keys = place_keys(motion.times, &samples, OPACITY_TOLERANCE).indices;
-    let key = |&k: &usize| json!({ "time": rounded(motion.times[k]), "value": rounded(opacities[k]) });
+    let key = |&k: &usize| json!({ "time": seconds(motion.times[k]), "value": rounded(opacities[k]) });
     Some(keys.iter().map(key).collect())
 }
 
@@ -326,7 +330,7 @@ fn draw_order(motion: &PuppetMotion<'_>, slots: &[Slot]) -> Option<Value> {
                 offsets.push(json!({ "slot": data.name, "offset": place as i64 - slot as i64 }));
             }
         }
-        let mut key = json!({ "time": rounded(motion.times[frame]) });
+        let mut key = json!({ "time": seconds(motion.times[frame]) });
         if !offsets.is_empty() {
             key["offsets"] = json!(offsets);
         }
@@ -402,9 +406,9 @@ mod tests {
                 }
             }
             // Times are rounded, too: a vertex moves by 126 pixels a second.
-            assert!(worst <= files.report.worst + 126.0 * 0.5e-4, "{worst}");
+            assert!(worst <= files.report.worst + 126.0 * 0.5e-6, "{worst}");
             assert!(
-                max_error == 0.0 || (worst <= max_error + 0.01 && keys.len() < 25),
+                max_error == 0.0 || (worst <= max_error + 0.01 && keys.len() <= 25),
                 "{worst}"
             );
         }

@@ -21,6 +21,8 @@ pub(super) struct Job<'a> {
     pub(super) numbers: Vec<usize>,
     /// Whether frames that are there already are left out.
     pub(super) resume: bool,
+    /// How far, in pixels, formats with keys may be from the frames.
+    pub(super) max_error: f64,
     /// What is told.
     pub(super) verbosity: Verbosity,
 }

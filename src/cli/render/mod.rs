@@ -4,6 +4,7 @@ mod apng;
 mod format;
 mod gif;
 mod job;
+mod mesh;
 mod sequence;
 
 use std::path::PathBuf;
@@ -14,7 +15,7 @@ use inbetween::scene::Scene;
 
 use self::format::Format;
 use self::job::Job;
-use super::values::{FrameNumbers, Grid, frame_rate, thread_count};
+use super::values::{FrameNumbers, Grid, frame_rate, pixels, thread_count};
 use super::{Failure, Verbosity};
 
 /// Render the animation of a scene
@@ -51,6 +52,9 @@ pub(crate) struct Arguments {
     /// Leave out frames whose file is already there (folders only)
     #[arg(long)]
     resume: bool,
+    /// How far, in pixels, formats with keys may be from the frames (.glb, spine)
+    #[arg(long, value_name = "PX", value_parser = pixels, default_value_t = 0.5)]
+    max_error: f64,
 }
 
 /// Writes one kind of output.
@@ -62,12 +66,12 @@ fn writer(format: Format) -> Option<Writer> {
         Format::Png => Some(sequence::run),
         Format::Gif => Some(gif::run),
         Format::Apng => Some(apng::run),
+        Format::Glb => Some(mesh::glb),
+        Format::Spine => Some(mesh::spine),
         Format::WebP
         | Format::Svg
         | Format::SvgSequence
         | Format::Lottie
-        | Format::Glb
-        | Format::Spine
         | Format::Sprites
         | Format::Runtime
         | Format::Mp4
@@ -113,6 +117,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         scene: &scene,
         numbers,
         resume: arguments.resume,
+        max_error: arguments.max_error,
         verbosity,
     };
     pool.install(|| write(job))?;
