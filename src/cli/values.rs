@@ -108,6 +108,14 @@ pub(crate) fn frame_rate(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A distance in pixels.
+pub(crate) fn pixels(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(distance) if (0.0..=1e6).contains(&distance) => Ok(distance),
+        _ => Err(format!("'{text}' is no number of pixels; 0 is exact, 0.5 hardly seen")),
+    }
+}
+
 /// A number of threads.
 pub(crate) fn thread_count(text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {

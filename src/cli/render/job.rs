@@ -23,6 +23,8 @@ pub(super) struct Job<'a> {
     pub(super) resume: bool,
     /// How progress is told.
     pub(super) progress: ProgressKind,
+    /// How far, in pixels, formats with keys may be from the frames.
+    pub(super) max_error: f64,
     /// What is told.
     pub(super) verbosity: Verbosity,
 }

@@ -5,6 +5,7 @@ mod fingerprint;
 mod format;
 mod gif;
 mod job;
+mod mesh;
 mod sequence;
 mod sprites;
 mod video;
@@ -19,7 +20,7 @@ use inbetween::scene::{Background, Scene};
 use self::format::Format;
 use self::job::Job;
 use super::progress::ProgressKind;
-use super::values::{FrameNumbers, Grid, background, frame_rate, thread_count};
+use super::values::{FrameNumbers, Grid, background, frame_rate, pixels, thread_count};
 use super::{Failure, Verbosity};
 
 /// Render the animation of a scene
@@ -66,6 +67,9 @@ pub(crate) struct Arguments {
     /// How progress is told
     #[arg(long, value_name = "KIND", default_value = "auto")]
     progress: ProgressKind,
+    /// How far, in pixels, formats with keys may be from the frames (.glb, spine)
+    #[arg(long, value_name = "PX", value_parser = pixels, default_value_t = 0.5)]
+    max_error: f64,
 }
 
 /// Writes one kind of output.
@@ -81,7 +85,9 @@ fn writer(format: Format) -> Option<Writer> {
         Format::Sprites => Some(sprites::run),
         Format::Mp4 => Some(video::mp4),
         Format::WebM => Some(video::webm),
-        Format::Svg | Format::SvgSequence | Format::Lottie | Format::Glb | Format::Spine | Format::Runtime => None,
+        Format::Glb => Some(mesh::glb),
+        Format::Spine => Some(mesh::spine),
+        Format::Svg | Format::SvgSequence | Format::Lottie | Format::Runtime => None,
     }
 }
 
@@ -127,6 +133,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         numbers,
         resume: arguments.resume,
         progress: arguments.progress,
+        max_error: arguments.max_error,
         verbosity,
     };
     pool.install(|| write(job))?;

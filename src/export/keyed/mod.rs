@@ -15,7 +15,9 @@ mod planner;
 mod tree;
 
 pub(super) use planner::Planner;
-pub(super) use tree::{GradientTrack, Group, Node, PaintTrack, Picture, Piece, Shape, Siblings, StrokeTrack, runs, settled};
+pub(super) use tree::{
+    GradientTrack, Group, Node, PaintTrack, Picture, Piece, Shape, Siblings, StrokeTrack, runs, settled,
+};
 
 use super::Repetition;
 use crate::render::drawing::VectorFrame;

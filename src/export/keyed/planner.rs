@@ -21,7 +21,9 @@ pub(in crate::export) struct Planner<'a> {
 impl<'a> Planner<'a> {
     pub(in crate::export) fn new(timing: &SampleTiming, options: &'a KeyOptions) -> Self {
         Self {
-            times: (0..timing.sample_count()).map(|sample| timing.frame_of(sample)).collect(),
+            times: (0..timing.sample_count())
+                .map(|sample| timing.frame_of(sample))
+                .collect(),
             options,
             report: KeyReport::default(),
         }
@@ -58,7 +60,10 @@ impl<'a> Planner<'a> {
     }
 
     fn place(&mut self, samples: &[Vec<Point>], tolerance: f64, rest: f64) -> (Vec<usize>, f64) {
-        let from_first = samples.iter().map(|sample| distance(sample, &samples[0])).fold(0.0, f64::max);
+        let from_first = samples
+            .iter()
+            .map(|sample| distance(sample, &samples[0]))
+            .fold(0.0, f64::max);
         if samples.len() < 2 || from_first <= rest.min(tolerance) {
             return (vec![0], from_first);
         }

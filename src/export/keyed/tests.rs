@@ -92,7 +92,11 @@ pub(in crate::export) fn everything(share: f64) -> VectorFrame {
     let mut line = bar("line", turn_rad);
     line.subpaths.push(Subpath {
         start: Point::new(4.0, 40.0),
-        cubics: vec![[Point::new(14.0, 30.0 + 5.0 * swing), Point::new(24.0, 46.0), Point::new(44.0, 40.0)]],
+        cubics: vec![[
+            Point::new(14.0, 30.0 + 5.0 * swing),
+            Point::new(24.0, 46.0),
+            Point::new(44.0, 40.0),
+        ]],
         is_closed: false,
     });
     line.fill = Some(Fill {
@@ -206,10 +210,7 @@ fn frames_that_differ_in_kind_are_refused() {
 fn unseen_points_lie_between_seen_ones() {
     let samples: Vec<Vec<f64>> = [5.0, 0.0, 9.0, 9.0, 3.0, 7.0].map(|value| vec![value]).to_vec();
     let seen = [false, true, false, false, true, false];
-    assert_eq!(
-        settled(&samples, &seen).concat(),
-        [0.0, 0.0, 1.0, 2.0, 3.0, 3.0]
-    );
+    assert_eq!(settled(&samples, &seen).concat(), [0.0, 0.0, 1.0, 2.0, 3.0, 3.0]);
     assert_eq!(settled(&samples, &[true; 6]), samples);
 }
 

@@ -181,16 +181,15 @@ impl Siblings {
             nodes: nodes.iter().map(Node::like).collect(),
             orders: Vec::new(),
             order_at: Vec::new(),
-            places: nodes.iter().enumerate().map(|(k, node)| (node.id().to_owned(), k)).collect(),
+            places: nodes
+                .iter()
+                .enumerate()
+                .map(|(k, node)| (node.id().to_owned(), k))
+                .collect(),
         }
     }
 
-    pub(super) fn add(
-        &mut self,
-        nodes: &[VectorNode],
-        is_frame: bool,
-        pictures: &mut Pictures,
-    ) -> Result<(), Fault> {
+    pub(super) fn add(&mut self, nodes: &[VectorNode], is_frame: bool, pictures: &mut Pictures) -> Result<(), Fault> {
         let mut order = Vec::with_capacity(nodes.len());
         for node in nodes {
             let place = self.places.get(node.id()).copied();
@@ -247,7 +246,10 @@ impl Node {
                 opacity: Vec::new(),
                 pieces: pieces(shape),
                 points: Vec::new(),
-                fill: shape.fill.as_ref().map(|fill| (PaintTrack::like(&fill.paint), fill.rule)),
+                fill: shape
+                    .fill
+                    .as_ref()
+                    .map(|fill| (PaintTrack::like(&fill.paint), fill.rule)),
                 stroke: shape.stroke.as_ref().map(StrokeTrack::like),
             })),
             VectorNode::Picture(picture) => Self::Picture(Picture {
@@ -455,7 +457,11 @@ where
             *sample = match (before, after) {
                 (Some(a), Some(b)) => {
                     let t = (j - a) as f64 / (b - a) as f64;
-                    samples[a].iter().zip(&samples[b]).map(|(a, b)| *a + (*b - *a) * t).collect()
+                    samples[a]
+                        .iter()
+                        .zip(&samples[b])
+                        .map(|(a, b)| *a + (*b - *a) * t)
+                        .collect()
                 }
                 (Some(only), None) | (None, Some(only)) => samples[only].clone(),
                 (None, None) => samples[0].clone(),

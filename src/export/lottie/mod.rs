@@ -156,14 +156,19 @@ impl LottieWriter<'_> {
             start += size;
         }
         let areas: Vec<f64> = starts.iter().map(|own| twice_area(&points[0][own.clone()])).collect();
-        let largest = areas.iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+        let largest = areas
+            .iter()
+            .copied()
+            .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
         let adds = |k: usize| areas[k] * largest >= 0.0;
         let mut order: Vec<usize> = (0..rings.len()).collect();
         order.sort_by_key(|k| !adds(*k));
         let masks: Vec<Value> = order
             .into_iter()
             .map(|k| {
-                let path = self.timeline.single(&keys, |sample| polygon(&points[sample][starts[k].clone()]));
+                let path = self
+                    .timeline
+                    .single(&keys, |sample| polygon(&points[sample][starts[k].clone()]));
                 json!({
                     "inv": false,
                     "mode": if adds(k) { "a" } else { "s" },
@@ -216,12 +221,18 @@ impl LottieWriter<'_> {
     fn picture(&mut self, picture: &Picture) -> Vec<Value> {
         let opacity = self.percent(&picture.opacity);
         let is_steady = opacity["a"] == 0;
-        let own = if is_steady { opacity.clone() } else { json!({"a": 0, "k": 100}) };
+        let own = if is_steady {
+            opacity.clone()
+        } else {
+            json!({"a": 0, "k": 100})
+        };
         let changes = runs(&picture.frames);
         let mut layers = Vec::new();
         for (k, (frame, file)) in changes.iter().enumerate() {
             let Some(file) = file else { continue };
-            let end = changes.get(k + 1).map_or(self.keyed.timing.frame_count, |(next, _)| *next);
+            let end = changes
+                .get(k + 1)
+                .map_or(self.keyed.timing.frame_count, |(next, _)| *next);
             let asset = self.image(*file);
             let mut layer = self.layer(2, &picture.id, own.clone(), json!({"refId": asset}));
             let [left, top, ..] = self.keyed.pictures.files[*file].place;

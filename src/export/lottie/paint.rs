@@ -168,7 +168,10 @@ impl LottieWriter<'_> {
         let lengths: Vec<Vec<f64>> = polar.iter().map(|[length, _]| vec![*length]).collect();
         let keys = self.planner.steps(&lengths);
         let length = self.timeline.scalar(&keys, |k| rounded(polar[k][0] * 100.0, 2));
-        let angles: Vec<Vec<f64>> = polar.iter().map(|[length, angle]| vec![angle * length.min(1.0)]).collect();
+        let angles: Vec<Vec<f64>> = polar
+            .iter()
+            .map(|[length, angle]| vec![angle * length.min(1.0)])
+            .collect();
         let keys = self.planner.steps(&angles);
         let angle = self.timeline.scalar(&keys, |k| rounded(polar[k][1].to_degrees(), 2));
         (length, angle)

@@ -9,8 +9,16 @@ fn lottie(keyed: &KeyedVector) -> (Value, KeyReport) {
 
 #[test]
 fn tangents_are_relative_and_the_last_vertex_is_the_first() {
-    let points = [[0.0, 0.0], [1.0, 0.0], [4.0, 2.0], [5.0, 2.0], [5.0, 3.0], [1.0, 1.0], [0.0, 0.0]]
-        .map(|[x, y]| Point::new(x, y));
+    let points = [
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [4.0, 2.0],
+        [5.0, 2.0],
+        [5.0, 3.0],
+        [1.0, 1.0],
+        [0.0, 0.0],
+    ]
+    .map(|[x, y]| Point::new(x, y));
     let piece = |is_closed| Piece { cubics: 2, is_closed };
     assert_eq!(
         bezier(piece(true), &points, true),
@@ -59,7 +67,11 @@ fn layers_are_front_first_and_references_lead_somewhere() {
     let assets = animation["assets"].as_array().expect("assets");
     let known: Vec<&str> = assets.iter().filter_map(|asset| asset["id"].as_str()).collect();
     let inner = assets.iter().filter_map(|asset| asset["layers"].as_array()).flatten();
-    let wanted: Vec<&str> = layers.iter().chain(inner).filter_map(|layer| layer["refId"].as_str()).collect();
+    let wanted: Vec<&str> = layers
+        .iter()
+        .chain(inner)
+        .filter_map(|layer| layer["refId"].as_str())
+        .collect();
     assert!(wanted.len() > 8);
     assert!(wanted.iter().all(|id| known.contains(id)));
     assert!(report.approximations.is_empty(), "{report:?}");

@@ -21,9 +21,12 @@ use base64::Engine as _;
 use element::Ids;
 use text::{curves, rings};
 
-use super::keyed::{Group, KeyOptions, KeyReport, KeyedError, KeyedVector, Node, Picture, Planner, SampleTiming, Shape, Siblings, runs, settled};
-use super::smil::Clock;
 use super::Repetition;
+use super::keyed::{
+    Group, KeyOptions, KeyReport, KeyedError, KeyedVector, Node, Picture, Planner, SampleTiming, Shape, Siblings, runs,
+    settled,
+};
+use super::smil::Clock;
 use crate::render::drawing::{FillRule, VectorFrame};
 
 /// Decimals of lengths in a still frame.
@@ -102,7 +105,12 @@ struct SvgWriter<'a> {
 impl SvgWriter<'_> {
     fn siblings(&mut self, siblings: &Siblings, seen: &[bool]) -> Vec<Element> {
         if siblings.orders.len() < 2 {
-            return siblings.nodes.iter().filter_map(|node| self.node(node, seen)).map(|(_, e)| e).collect();
+            return siblings
+                .nodes
+                .iter()
+                .filter_map(|node| self.node(node, seen))
+                .map(|(_, e)| e)
+                .collect();
         }
         let mut names = Vec::with_capacity(siblings.nodes.len());
         for node in &siblings.nodes {
@@ -117,7 +125,10 @@ impl SvgWriter<'_> {
         for (k, order) in siblings.orders.iter().enumerate() {
             let mut group = Element::new("g");
             let shown = |is_shown: bool| if is_shown { "inline" } else { "none" }.to_owned();
-            let values: Vec<_> = changes.iter().map(|(sample, order)| (*sample, shown(*order == k))).collect();
+            let values: Vec<_> = changes
+                .iter()
+                .map(|(sample, order)| (*sample, shown(*order == k)))
+                .collect();
             self.clock.switch(&mut group, "display", &values);
             group.extend(order.iter().filter_map(|place| {
                 let name = names[*place].as_ref()?;
@@ -166,8 +177,9 @@ impl SvgWriter<'_> {
         let points = settled(&shape.points, seen);
         let keys = self.planner.pixels(&points);
         let decimals = self.decimals;
-        self.clock
-            .animate(&mut element, "d", &keys, |k| curves(&shape.pieces, &points[k], decimals));
+        self.clock.animate(&mut element, "d", &keys, |k| {
+            curves(&shape.pieces, &points[k], decimals)
+        });
         match &shape.fill {
             Some((paint, rule)) => {
                 self.paint(&mut element, paint::Part::Fill, name, paint, seen);

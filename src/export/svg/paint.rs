@@ -97,9 +97,13 @@ impl SvgWriter<'_> {
     }
 
     fn gradient(&mut self, name: &str, gradient: &GradientTrack, seen: &[bool]) -> Element {
-        let mut element = Element::new(if gradient.is_radial { "radialGradient" } else { "linearGradient" })
-            .with("id", name)
-            .with("gradientUnits", "userSpaceOnUse");
+        let mut element = Element::new(if gradient.is_radial {
+            "radialGradient"
+        } else {
+            "linearGradient"
+        })
+        .with("id", name)
+        .with("gradientUnits", "userSpaceOnUse");
         match gradient.spread {
             Spread::Pad => {}
             Spread::Reflect => element.set("spreadMethod", "reflect"),
@@ -191,14 +195,16 @@ impl SvgWriter<'_> {
             return;
         }
         let degrees = |distance: f64| number((distance / reach).to_degrees(), 3);
-        self.clock
-            .transform(element, "translate", &keys, |k| numbers(&[points[k][0].x, points[k][0].y], 3));
+        self.clock.transform(element, "translate", &keys, |k| {
+            numbers(&[points[k][0].x, points[k][0].y], 3)
+        });
         self.clock
             .transform(element, "rotate", &keys, |k| degrees(points[k][2].x));
         self.clock
             .transform(element, "skewX", &keys, |k| degrees(points[k][3].x));
-        self.clock
-            .transform(element, "scale", &keys, |k| numbers(&[points[k][1].x, points[k][1].y], 3));
+        self.clock.transform(element, "scale", &keys, |k| {
+            numbers(&[points[k][1].x, points[k][1].y], 3)
+        });
     }
 }
 

@@ -22,7 +22,12 @@ fn a_frame_is_drawn_as_our_own_rasteriser_draws_it() {
         let text = svg_text(&frame).expect("a frame");
         let theirs = drawn(&text);
         let ours = rasterise(&frame, 1);
-        let differences = ours.pixels.iter().flatten().zip(&theirs).map(|(a, b)| f64::from(a.abs_diff(*b)));
+        let differences = ours
+            .pixels
+            .iter()
+            .flatten()
+            .zip(&theirs)
+            .map(|(a, b)| f64::from(a.abs_diff(*b)));
         let mean = differences.sum::<f64>() / theirs.len() as f64;
         assert!(mean < 0.8, "mean difference {mean} at {share}");
     }
@@ -57,7 +62,10 @@ fn animations(text: &str, attribute: &str) -> Vec<(Vec<f64>, Vec<String>)> {
     text.lines()
         .filter(|line| line.contains(&mark))
         .map(|line| {
-            let times = of(line, "keyTimes").split(';').map(|t| t.parse().expect("a time")).collect();
+            let times = of(line, "keyTimes")
+                .split(';')
+                .map(|t| t.parse().expect("a time"))
+                .collect();
             (times, of(line, "values").split(';').map(str::to_owned).collect())
         })
         .collect()
@@ -75,7 +83,11 @@ fn keys_are_alike_and_loops_close() {
             assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
             let commands = |value: &str| -> String { value.chars().filter(char::is_ascii_alphabetic).collect() };
             assert!(values.iter().all(|value| commands(value) == commands(&values[0])));
-            assert_eq!(values[0], values[values.len() - 1], "the animation ends where it starts");
+            assert_eq!(
+                values[0],
+                values[values.len() - 1],
+                "the animation ends where it starts"
+            );
         }
         assert!(report.worst_px > 0.0 && report.worst_px <= 0.25, "{report:?}");
         assert!(report.worst_step > 0.0 && report.worst_step <= 1.0, "{report:?}");

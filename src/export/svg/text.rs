@@ -16,7 +16,11 @@ pub(in crate::export) fn number(value: f64, decimals: usize) -> String {
     } else {
         &text
     };
-    if short == "-0" { "0".to_owned() } else { short.to_owned() }
+    if short == "-0" {
+        "0".to_owned()
+    } else {
+        short.to_owned()
+    }
 }
 
 /// Numbers with spaces between them.
@@ -51,7 +55,12 @@ pub(in crate::export) fn rings(sizes: &[usize], points: &[Point], decimals: usiz
         let (own, after) = rest.split_at(*size);
         rest = after;
         for (k, point) in own.iter().enumerate() {
-            push(&mut text, if k == 0 { 'M' } else { 'L' }, std::slice::from_ref(point), decimals);
+            push(
+                &mut text,
+                if k == 0 { 'M' } else { 'L' },
+                std::slice::from_ref(point),
+                decimals,
+            );
         }
         if *size > 0 {
             text.push('Z');

@@ -1,0 +1,91 @@
+//! Textured meshes that are deformed: glTF, Spine.
+
+use inbetween::export::{PendingFile, PuppetMotion, PuppetReport, gltf_bytes, write_spine};
+use inbetween::pipeline::Character;
+use inbetween::render::puppet::{Puppet, PuppetFrame};
+use rayon::prelude::*;
+
+use super::job::Job;
+
+/// Writes one `.glb` file.
+pub(super) fn glb(job: Job<'_>) -> anyhow::Result<()> {
+    use std::io::Write as _;
+    let mut file = PendingFile::create(job.output)?;
+    let take = Take::new(&job)?;
+    let (bytes, report) = gltf_bytes(&take.motion(&job)).map_err(anyhow::Error::msg)?;
+    file.write_all(&bytes)?;
+    file.commit()?;
+    take.done(&job, &report)
+}
+
+/// Writes a skeleton with its pictures into a folder, or beside the `.json` file that is named.
+pub(super) fn spine(job: Job<'_>) -> anyhow::Result<()> {
+    let take = Take::new(&job)?;
+    let (_, report) = write_spine(job.output, &take.motion(&job))?;
+    take.done(&job, &report)
+}
+
+/// The frames that are wanted, as meshes.
+struct Take {
+    character: Character,
+    name: String,
+    puppet: Puppet,
+    times: Vec<f64>,
+    frames: Vec<PuppetFrame>,
+    progress: crate::cli::progress::Progress,
+}
+
+impl Take {
+    fn new(job: &Job<'_>) -> anyhow::Result<Self> {
+        let character = job.character()?;
+        let progress = job.progress();
+        let animation = job.animation();
+        let puppet = character.puppet();
+        let mut frames: Vec<PuppetFrame> = job
+            .numbers
+            .par_iter()
+            .map(|number| {
+                let posed = character.posed(animation, number - 1)?;
+                progress.advance();
+                Ok(character.puppet_frame(&puppet, &posed))
+            })
+            .collect::<anyhow::Result<_>>()?;
+        let first = job.numbers.first().copied().unwrap_or(1);
+        let mut times: Vec<f64> = (job.numbers.iter())
+            .map(|number| (number - first) as f64 / animation.fps)
+            .collect();
+        // A loop comes back to where it began, a frame's time after its last frame.
+        if animation.is_loop() && frames.len() == animation.frame_count() && frames.len() > 1 {
+            frames.push(frames[0].clone());
+            times.push(times.len() as f64 / animation.fps);
+        }
+        Ok(Self {
+            name: job.scene.short_name(),
+            character,
+            puppet,
+            times,
+            frames,
+            progress,
+        })
+    }
+
+    fn motion(&self, job: &Job<'_>) -> PuppetMotion<'_> {
+        PuppetMotion {
+            name: &self.name,
+            puppet: &self.puppet,
+            times: &self.times,
+            frames: &self.frames,
+            max_error: job.max_error,
+        }
+    }
+
+    fn done(&self, job: &Job<'_>, report: &PuppetReport) -> anyhow::Result<()> {
+        let keys = report.keys.iter().max().copied().unwrap_or(0);
+        job.verbosity.note(&format!(
+            "{keys} keys for {} frames; vertices are at most {:.3} pixels from where the frames have them",
+            self.frames.len(),
+            report.worst
+        ));
+        job.done(&self.character, &self.progress)
+    }
+}

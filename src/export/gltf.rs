@@ -1,0 +1,513 @@
+//! glTF 2.0: a mesh with morph targets, in one binary file (`.glb`).
+//!
+//! The blend is not linear in the poses' weights, so not the poses but the shapes at key frames are the targets: the mesh has the
+//! shape of the first key, each further key is a target, and the weights' animation fades from each to the next. Between keys
+//! vertices move straight, and keys lie so close that none leaves its place by more than
+//! [`max_error`](PuppetMotion::max_error).
+//!
+//! - **Units**: [`PIXELS_A_UNIT`] pixels of the frame are one unit. x to the right, y *up*, the frame's centre in the origin.
+//!   An orthographic camera shows exactly the frame.
+//! - **Layers** are nodes, [`LAYER_GAP`] apart in z from back to front; where the order changes, they jump.
+//! - **Textures** are embedded PNG files, shown unlit (`KHR_materials_unlit`), blended by their alpha, from both sides.
+//! - Several textures of a layer: core glTF animates no opacity, so there is one node for each, with the same shapes; shown
+//!   at each time is the one that weighs most, the others are scaled to nothing. A layer's opacity is treated alike: it is shown from one
+//!   half on. This is the one difference from our frames, which cross-fade.
+//!
+//! What else there is, and why not: morph targets of vertex colours would fade, but readers may ignore them and some do, and then
+//! show nothing at all; `KHR_animation_pointer` is known to few.
+
+use serde_json::{Value, json};
+
+use super::puppet_motion::{LayerMotion, PuppetMotion, PuppetReport, changes, texture_png};
+use crate::math::Point;
+use crate::render::puppet::{PuppetLayer, PuppetTexture};
+
+/// Pixels of the frame that are one unit.
+pub const PIXELS_A_UNIT: f64 = 100.0;
+/// How far a layer lies before the one behind it, in units.
+pub const LAYER_GAP: f64 = 0.01;
+/// How far the camera stands before the frame, in units.
+const CAMERA_DISTANCE: f64 = 10.0;
+
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+const UNSIGNED_SHORT: u32 = 5123;
+const UNSIGNED_INT: u32 = 5125;
+const FLOAT: u32 = 5126;
+const LINEAR: u32 = 9729;
+const LINEAR_MIPMAP_LINEAR: u32 = 9987;
+const CLAMP_TO_EDGE: u32 = 33071;
+
+/// The bytes of a `.glb` file.
+///
+/// # Errors
+/// What is wrong with the motion, see [`PuppetMotion::check`]; a file beyond 4 GB.
+pub fn gltf_bytes(motion: &PuppetMotion<'_>) -> Result<(Vec<u8>, PuppetReport), String> {
+    motion.check()?;
+    let mut file = File::default();
+    let mut report = PuppetReport {
+        keys: Vec::new(),
+        worst: 0.0,
+    };
+    let mut layer_nodes = Vec::new();
+    for layer in 0..motion.puppet.layers.len() {
+        let shapes = motion.layer_motion(layer, motion.max_error);
+        report.keys.push(shapes.keys.indices.len());
+        report.worst = report.worst.max(shapes.keys.worst);
+        layer_nodes.push(file.add_layer(motion, layer, &shapes)?);
+    }
+    let bytes = file.finish(motion, &layer_nodes, &report)?;
+    Ok((bytes, report))
+}
+
+/// The parts of the file so far.
+#[derive(Default)]
+struct File {
+    bytes: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+    images: Vec<Value>,
+    materials: Vec<Value>,
+    meshes: Vec<Value>,
+    nodes: Vec<Value>,
+    samplers: Vec<Value>,
+    channels: Vec<Value>,
+}
+
+impl File {
+    /// Adds a node with one child a texture; its index.
+    fn add_layer(&mut self, motion: &PuppetMotion<'_>, index: usize, shapes: &LayerMotion) -> Result<usize, String> {
+        let layer = &motion.puppet.layers[index];
+        let heaviest: Vec<Option<usize>> = (0..motion.frames.len())
+            .map(|frame| motion.heaviest(index, frame))
+            .collect();
+        if heaviest.iter().all(Option::is_none) {
+            return Ok(push(&mut self.nodes, json!({ "name": layer.name })));
+        }
+        let indices = self.add_indices(layer);
+        let base = self.add_positions(&placed(&shapes.shapes[0], motion.puppet.size));
+        let targets: Vec<Value> = shapes.shapes[1..]
+            .iter()
+            .map(|shape| json!({ "POSITION": self.add_positions(&moves(&shapes.shapes[0], shape)) }))
+            .collect();
+        let weights = (!targets.is_empty()).then(|| self.add_hats(motion, shapes));
+        let mut children = Vec::new();
+        for (k, texture) in layer.textures.iter().enumerate() {
+            if !heaviest.contains(&Some(k)) {
+                continue;
+            }
+            let places = self.add_places(texture);
+            let mut primitive = json!({
+                "attributes": { "POSITION": base, "TEXCOORD_0": places },
+                "indices": indices,
+                "material": self.add_material(&layer.name, texture)?,
+            });
+            let name = format!("{} {}", layer.name, texture.name);
+            let mut mesh = json!({ "name": name });
+            if !targets.is_empty() {
+                primitive["targets"] = json!(targets);
+                mesh["weights"] = json!(vec![0; targets.len()]);
+            }
+            mesh["primitives"] = json!([primitive]);
+            self.meshes.push(mesh);
+            let node = push(&mut self.nodes, json!({ "name": name, "mesh": self.meshes.len() - 1 }));
+            children.push(node);
+            if let Some(sampler) = weights {
+                self.add_channel(sampler, node, "weights");
+            }
+            let shown: Vec<bool> = heaviest.iter().map(|h| *h == Some(k)).collect();
+            self.add_visibility(motion, node, &shown);
+        }
+        let depth: Vec<usize> = (motion.frames.iter())
+            .map(|frame| frame.order.iter().position(|&l| l == index).unwrap_or(0))
+            .collect();
+        let place = |depth: usize| [0.0, 0.0, depth as f64 * LAYER_GAP];
+        let node = json!({ "name": layer.name, "translation": place(depth[0]), "children": children });
+        let node = push(&mut self.nodes, node);
+        let jumps = changes(&depth);
+        if jumps.len() > 1 {
+            let places: Vec<f32> = jumps.iter().flat_map(|&k| place(depth[k]).map(|c| c as f32)).collect();
+            self.add_steps(motion, node, "translation", &jumps, &places);
+        }
+        Ok(node)
+    }
+
+    /// A sampler that fades from each key's target to the next one's. The first key is the mesh itself.
+    fn add_hats(&mut self, motion: &PuppetMotion<'_>, shapes: &LayerMotion) -> usize {
+        let keys = &shapes.keys.indices;
+        let input = self.add_times(motion, keys);
+        let mut weights = vec![0.0f32; keys.len() * (keys.len() - 1)];
+        for key in 1..keys.len() {
+            weights[key * (keys.len() - 1) + key - 1] = 1.0;
+        }
+        let output = self.add_floats(&weights, "SCALAR", None);
+        let sampler = json!({ "input": input, "output": output, "interpolation": "LINEAR" });
+        push(&mut self.samplers, sampler)
+    }
+
+    fn add_visibility(&mut self, motion: &PuppetMotion<'_>, node: usize, shown: &[bool]) {
+        let jumps = changes(shown);
+        let scale = |is_shown: bool| if is_shown { [1.0f32; 3] } else { [0.0; 3] };
+        if !shown[0] {
+            self.nodes[node]["scale"] = json!(scale(false));
+        }
+        if jumps.len() > 1 {
+            let scales: Vec<f32> = jumps.iter().flat_map(|&k| scale(shown[k])).collect();
+            self.add_steps(motion, node, "scale", &jumps, &scales);
+        }
+    }
+
+    fn add_steps(&mut self, motion: &PuppetMotion<'_>, node: usize, path: &str, frames: &[usize], values: &[f32]) {
+        let input = self.add_times(motion, frames);
+        let output = self.add_floats(values, "VEC3", None);
+        let sampler = json!({ "input": input, "output": output, "interpolation": "STEP" });
+        let sampler = push(&mut self.samplers, sampler);
+        self.add_channel(sampler, node, path);
+    }
+
+    fn add_channel(&mut self, sampler: usize, node: usize, path: &str) {
+        self.channels
+            .push(json!({ "sampler": sampler, "target": { "node": node, "path": path } }));
+    }
+
+    fn add_times(&mut self, motion: &PuppetMotion<'_>, frames: &[usize]) -> usize {
+        let times: Vec<f32> = frames.iter().map(|&k| motion.times[k] as f32).collect();
+        let accessor = self.add_floats(&times, "SCALAR", None);
+        self.bound(accessor, &times, 1);
+        accessor
+    }
+
+    fn add_positions(&mut self, positions: &[[f32; 3]]) -> usize {
+        let accessor = self.add_floats(positions.as_flattened(), "VEC3", Some(ARRAY_BUFFER));
+        self.bound(accessor, positions.as_flattened(), 3);
+        accessor
+    }
+
+    fn add_places(&mut self, texture: &PuppetTexture) -> usize {
+        let (width, height) = (texture.width as f64, texture.height as f64);
+        let places: Vec<f32> = texture
+            .places
+            .iter()
+            .flat_map(|p| [(p.x / width) as f32, (p.y / height) as f32])
+            .collect();
+        self.add_floats(&places, "VEC2", Some(ARRAY_BUFFER))
+    }
+
+    fn add_indices(&mut self, layer: &PuppetLayer) -> usize {
+        // With y up a triangle runs the other way round.
+        let indices: Vec<usize> = layer.triangles.iter().flat_map(|&[a, b, c]| [a, c, b]).collect();
+        let largest = indices.iter().copied().max().unwrap_or(0);
+        // The largest value of a type is not an index but a restart.
+        let (kind, bytes): (u32, Vec<u8>) = if largest < usize::from(u16::MAX) {
+            (
+                UNSIGNED_SHORT,
+                indices.iter().flat_map(|&i| (i as u16).to_le_bytes()).collect(),
+            )
+        } else {
+            (
+                UNSIGNED_INT,
+                indices.iter().flat_map(|&i| (i as u32).to_le_bytes()).collect(),
+            )
+        };
+        let view = self.add_view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
+        let accessor = json!({ "bufferView": view, "componentType": kind, "count": indices.len(), "type": "SCALAR" });
+        push(&mut self.accessors, accessor)
+    }
+
+    fn add_floats(&mut self, values: &[f32], shape: &str, target: Option<u32>) -> usize {
+        let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+        let view = self.add_view(&bytes, target);
+        let components = match shape {
+            "VEC3" => 3,
+            "VEC2" => 2,
+            _ => 1,
+        };
+        let count = values.len() / components;
+        let accessor = json!({ "bufferView": view, "componentType": FLOAT, "count": count, "type": shape });
+        push(&mut self.accessors, accessor)
+    }
+
+    /// States the least and greatest of each component.
+    fn bound(&mut self, accessor: usize, values: &[f32], components: usize) {
+        let extreme = |component: usize, pick: fn(f32, f32) -> f32| {
+            values
+                .iter()
+                .skip(component)
+                .step_by(components)
+                .copied()
+                .reduce(pick)
+                .unwrap_or(0.0)
+        };
+        let low: Vec<f32> = (0..components).map(|c| extreme(c, f32::min)).collect();
+        let high: Vec<f32> = (0..components).map(|c| extreme(c, f32::max)).collect();
+        self.accessors[accessor]["min"] = json!(low);
+        self.accessors[accessor]["max"] = json!(high);
+    }
+
+    fn add_material(&mut self, layer: &str, texture: &PuppetTexture) -> Result<usize, String> {
+        let png = texture_png(texture)?;
+        let view = self.add_view(&png, None);
+        let name = format!("{layer} {}", texture.name);
+        self.images
+            .push(json!({ "name": name, "bufferView": view, "mimeType": "image/png" }));
+        let material = json!({
+            "name": name,
+            "alphaMode": "BLEND",
+            "doubleSided": true,
+            "pbrMetallicRoughness": {
+                "baseColorTexture": { "index": self.images.len() - 1 },
+                "metallicFactor": 0.0,
+                "roughnessFactor": 1.0,
+            },
+            "extensions": { "KHR_materials_unlit": {} },
+        });
+        Ok(push(&mut self.materials, material))
+    }
+
+    fn add_view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        let mut view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
+        if let Some(target) = target {
+            view["target"] = json!(target);
+        }
+        self.bytes.extend_from_slice(bytes);
+        push(&mut self.views, view)
+    }
+
+    fn finish(
+        mut self,
+        motion: &PuppetMotion<'_>,
+        layer_nodes: &[usize],
+        report: &PuppetReport,
+    ) -> Result<Vec<u8>, String> {
+        let root = push(&mut self.nodes, json!({ "name": motion.name, "children": layer_nodes }));
+        let place = [0.0, 0.0, CAMERA_DISTANCE];
+        let camera = push(
+            &mut self.nodes,
+            json!({ "name": "camera", "camera": 0, "translation": place }),
+        );
+        let [width, height] = motion.puppet.size.map(|side| side as f64 / PIXELS_A_UNIT);
+        let textures: Vec<Value> = (0..self.images.len())
+            .map(|image| json!({ "sampler": 0, "source": image }))
+            .collect();
+        let mut document = json!({
+            "asset": {
+                "version": "2.0",
+                "generator": concat!("inbetween ", env!("CARGO_PKG_VERSION")),
+                "extras": {
+                    "pixels_per_unit": PIXELS_A_UNIT,
+                    "frame": motion.puppet.size,
+                    "worst_deviation_px": report.worst,
+                },
+            },
+            "extensionsUsed": ["KHR_materials_unlit"],
+            "scene": 0,
+            "scenes": [{ "nodes": [root, camera] }],
+            "nodes": self.nodes,
+            "cameras": [{
+                "type": "orthographic",
+                "orthographic": {
+                    "xmag": width / 2.0,
+                    "ymag": height / 2.0,
+                    "znear": CAMERA_DISTANCE / 100.0,
+                    "zfar": CAMERA_DISTANCE * 2.0,
+                },
+            }],
+            "meshes": self.meshes,
+            "materials": self.materials,
+            "textures": textures,
+            "images": self.images,
+            "samplers": [{
+                "magFilter": LINEAR,
+                "minFilter": LINEAR_MIPMAP_LINEAR,
+                "wrapS": CLAMP_TO_EDGE,
+                "wrapT": CLAMP_TO_EDGE,
+            }],
+            "accessors": self.accessors,
+            "bufferViews": self.views,
+            "buffers": [{ "byteLength": self.bytes.len() }],
+        });
+        if !self.channels.is_empty() {
+            document["animations"] =
+                json!([{ "name": motion.name, "channels": self.channels, "samplers": self.samplers }]);
+        }
+        // Lists may be missing, but not empty.
+        if let Some(members) = document.as_object_mut() {
+            members.retain(|_, member| member.as_array().is_none_or(|list| !list.is_empty()));
+        }
+        container(&document, self.bytes)
+    }
+}
+
+/// Header, JSON chunk, binary chunk.
+fn container(document: &Value, mut binary: Vec<u8>) -> Result<Vec<u8>, String> {
+    let mut text = document.to_string().into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    binary.resize(binary.len().next_multiple_of(4), 0);
+    let total = 12 + 8 + text.len() + 8 + binary.len();
+    let total =
+        u32::try_from(total).map_err(|_| "the file would be larger than the format allows (4 GB)".to_owned())?;
+    let mut bytes = Vec::with_capacity(total as usize);
+    bytes.extend(b"glTF");
+    bytes.extend(2u32.to_le_bytes());
+    bytes.extend(total.to_le_bytes());
+    for (kind, chunk) in [(b"JSON", &text), (b"BIN\0", &binary)] {
+        bytes.extend((chunk.len() as u32).to_le_bytes());
+        bytes.extend(kind);
+        bytes.extend(chunk);
+    }
+    Ok(bytes)
+}
+
+fn push(list: &mut Vec<Value>, value: Value) -> usize {
+    list.push(value);
+    list.len() - 1
+}
+
+fn placed(positions: &[Point], size: [usize; 2]) -> Vec<[f32; 3]> {
+    let centre = Point::new(size[0] as f64, size[1] as f64) * 0.5;
+    positions.iter().map(|p| in_units(p - centre)).collect()
+}
+
+fn moves(from: &[Point], to: &[Point]) -> Vec<[f32; 3]> {
+    from.iter().zip(to).map(|(a, b)| in_units(b - a)).collect()
+}
+
+fn in_units(p: Point) -> [f32; 3] {
+    [(p.x / PIXELS_A_UNIT) as f32, (-p.y / PIXELS_A_UNIT) as f32, 0.0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::puppet_motion::testing::turning;
+    use super::*;
+
+    struct Read {
+        json: Value,
+        binary: Vec<u8>,
+    }
+
+    impl Read {
+        fn new(bytes: &[u8]) -> Self {
+            let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize;
+            assert_eq!((&bytes[..4], word(4), word(8)), (b"glTF".as_slice(), 2, bytes.len()));
+            let text = 20..20 + word(12);
+            let json = serde_json::from_slice(&bytes[text.clone()]).expect("JSON");
+            assert_eq!(word(text.end) + text.end + 8, bytes.len());
+            Self {
+                json,
+                binary: bytes[text.end + 8..].to_vec(),
+            }
+        }
+
+        fn floats(&self, accessor: &Value) -> Vec<f32> {
+            let accessor = &self.json["accessors"][accessor.as_u64().expect("an index") as usize];
+            let view = &self.json["bufferViews"][accessor["bufferView"].as_u64().expect("an index") as usize];
+            let start = view["byteOffset"].as_u64().expect("a place") as usize;
+            let length = view["byteLength"].as_u64().expect("a length") as usize;
+            self.binary[start..start + length]
+                .chunks_exact(4)
+                .map(|b| f32::from_le_bytes(b.try_into().expect("four bytes")))
+                .collect()
+        }
+
+        /// The sampler of a node's channel: its times and values.
+        fn channel(&self, node: &str, path: &str) -> Option<(Vec<f32>, Vec<f32>)> {
+            let animation = &self.json["animations"][0];
+            let channel = animation["channels"]
+                .as_array()
+                .expect("channels")
+                .iter()
+                .find(|channel| {
+                    let target = &channel["target"];
+                    let at = target["node"].as_u64().expect("a node") as usize;
+                    self.json["nodes"][at]["name"] == node && target["path"] == path
+                })?;
+            let sampler = &animation["samplers"][channel["sampler"].as_u64().expect("an index") as usize];
+            Some((self.floats(&sampler["input"]), self.floats(&sampler["output"])))
+        }
+
+        fn value_at(times: &[f32], values: &[f32], time: f32) -> Vec<f32> {
+            let width = values.len() / times.len();
+            let next = times.partition_point(|t| *t <= time).clamp(1, times.len() - 1);
+            let part = ((time - times[next - 1]) / (times[next] - times[next - 1])).clamp(0.0, 1.0);
+            (0..width)
+                .map(|c| {
+                    let (a, b) = (values[(next - 1) * width + c], values[next * width + c]);
+                    a + part * (b - a)
+                })
+                .collect()
+        }
+    }
+
+    #[test]
+    fn vertices_are_where_the_frames_have_them() {
+        let turning = turning();
+        for max_error in [0.0, 0.5, 3.0] {
+            let (bytes, report) = gltf_bytes(&turning.motion(max_error)).expect("a file");
+            let file = Read::new(&bytes);
+            let primitive = &file.json["meshes"][0]["primitives"][0];
+            let base = file.floats(&primitive["attributes"]["POSITION"]);
+            let targets: Vec<Vec<f32>> = primitive["targets"]
+                .as_array()
+                .expect("targets")
+                .iter()
+                .map(|target| file.floats(&target["POSITION"]))
+                .collect();
+            let (times, weights) = file.channel("wheel red", "weights").expect("an animation");
+            let mut worst: f64 = 0.0;
+            for (time, frame) in turning.times.iter().zip(&turning.frames) {
+                let weights = Read::value_at(&times, &weights, *time as f32);
+                for (v, p) in frame.layers[0].positions.iter().enumerate() {
+                    let place = |c: usize| {
+                        let moved: f32 = targets.iter().zip(&weights).map(|(t, w)| t[3 * v + c] * w).sum();
+                        f64::from(base[3 * v + c] + moved) * 100.0
+                    };
+                    worst = worst.max((Point::new(place(0) + 100.0, 50.0 - place(1)) - p).norm());
+                }
+            }
+            assert!(
+                worst <= max_error + 1e-3 && (worst - report.worst).abs() < 1e-3,
+                "{worst} {report:?}"
+            );
+            assert_eq!(report.keys, [targets.len() + 1, 1]);
+            assert_eq!(file.channel("box green", "weights"), None);
+            assert!(max_error == 0.0 || targets.len() < 26);
+        }
+    }
+
+    #[test]
+    fn one_texture_a_layer_is_shown_and_layers_change_places() {
+        let turning = turning();
+        let file = Read::new(&gltf_bytes(&turning.motion(1.0)).expect("a file").0);
+        let (times, scales) = file.channel("wheel blue", "scale").expect("an animation");
+        assert_eq!(scales, [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
+        assert!(times[0] == 0.0 && (1.0..1.1).contains(&times[1]), "{times:?}");
+        let (_, scales) = file.channel("box green", "scale").expect("an animation");
+        assert_eq!(scales, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0], "hidden at the end");
+        let (times, places) = file.channel("wheel", "translation").expect("an animation");
+        assert_eq!((times, places), (vec![0.0, 1.0], vec![0.0, 0.0, 0.01, 0.0, 0.0, 0.0]));
+        // Seen with y up, triangles turn to the left.
+        let primitive = &file.json["meshes"][0]["primitives"][0];
+        let base = file.floats(&primitive["attributes"]["POSITION"]);
+        let view = &file.json["bufferViews"][primitive["indices"].as_u64().expect("an index") as usize];
+        let start = view["byteOffset"].as_u64().expect("a place") as usize;
+        let corner = |k: usize| {
+            let v = usize::from(file.binary[start + 2 * k]);
+            Point::new(f64::from(base[3 * v]), f64::from(base[3 * v + 1]))
+        };
+        assert!(crate::math::point::cross(corner(1) - corner(0), corner(2) - corner(0)) > 0.0);
+    }
+
+    #[test]
+    fn nothing_seen_is_still_a_file() {
+        let mut turning = turning();
+        for frame in &mut turning.frames {
+            for layer in &mut frame.layers {
+                layer.opacity = 0.0;
+            }
+        }
+        let file = Read::new(&gltf_bytes(&turning.motion(1.0)).expect("a file").0);
+        assert_eq!(file.json.get("meshes"), None);
+    }
+}
