@@ -1,19 +1,22 @@
-//! Draws the four scenes in `data/`: `cargo run --example draw_data -- data`.
+//! Draws the five scenes in `data/`: `cargo run --example draw_data -- data`.
 //!
 //! The pictures there were made by this program and are committed beside it. Drawing them again gives the same bytes.
 //!
 //! - [`walker`]: five bitmaps of one figure, drawn from a skeleton;
 //! - [`snake`]: five vector drawings of one body, bent along five centre lines;
 //! - [`face`]: four vector drawings of one head, two expressions by two turns;
-//! - [`clown`]: two bitmaps of one figure, and four poses that are these two deformed.
+//! - [`clown`]: two bitmaps of one figure, and four poses that are these two deformed;
+//! - [`bear`]: six vector drawings in groups, one a layer: a body, two arms, and a flower that is in three of them.
 //!
 //! The walker and the clown are two [`figure`]s.
 
+mod bear;
 mod canvas;
 mod clown;
 mod curves;
 mod face;
 mod figure;
+mod layered;
 mod scene;
 mod snake;
 mod svg;
@@ -28,5 +31,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     snake::draw(&folder.join("snake"))?;
     face::draw(&folder.join("face"))?;
     clown::draw(&folder.join("clown"))?;
+    bear::draw(&folder.join("bear"))?;
     Ok(())
 }

@@ -100,17 +100,17 @@ pub(crate) fn save_with_copies(folder: &Path, scene: &Scene, copies: &[Copy]) ->
             places.join(", ")
         )?;
     }
-    let [width, height] = scene.size_px;
-    write!(
-        text,
-        "\n[animation]\nfps = 24\nloop = true\nsize = [{width}, {height}]\nbackground = \"white\"\n{}",
-        scene.keys
-    )?;
+    text.push_str(&animation(scene.size_px, scene.keys));
     std::fs::write(folder.join("scene.toml"), text)?;
     Ok(())
 }
 
+/// The `[animation]` section.
+pub(crate) fn animation([width, height]: [u32; 2], keys: &str) -> String {
+    format!("\n[animation]\nfps = 24\nloop = true\nsize = [{width}, {height}]\nbackground = \"white\"\n{keys}")
+}
+
 /// Hundredths, with a decimal point even where there is nothing behind it.
-fn decimal(value: f64) -> String {
+pub(crate) fn decimal(value: f64) -> String {
     format!("{:?}", rounded(value))
 }
