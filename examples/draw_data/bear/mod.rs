@@ -39,7 +39,7 @@ const LAYERS: [Layer; 4] = [
     },
     Layer {
         name: "flower",
-        anchor: Some(("arm", "grip")),
+        anchor: Some(("arm", "stem")),
     },
     Layer {
         name: "body",
@@ -164,7 +164,7 @@ const ATTITUDES: [Attitude; 6] = [
     Attitude {
         name: "bow",
         at: [0.6, -1.0],
-        hips: Vec2::new(-16.0, 8.0),
+        hips: Vec2::new(-46.0, 8.0),
         lean_deg: 17.0,
         tilt_deg: 27.0,
         nod: 34.0,
@@ -172,7 +172,7 @@ const ATTITUDES: [Attitude; 6] = [
         eyes: 0.0,
         mouth: 0.1,
         near: arm(-8.0, -86.0),
-        far: arm(62.0, 92.0),
+        far: arm(46.0, 64.0),
         ..REST
     },
     Attitude {
@@ -198,9 +198,9 @@ const ATTITUDES: [Attitude; 6] = [
         tilt_deg: -10.0,
         look: Vec2::new(-12.0, -6.0),
         mouth: 1.0,
-        near: arm(112.0, 152.0),
+        near: arm(120.0, 166.0),
         far: arm(34.0, 26.0),
-        flower: Some((-14.0, -16.0)),
+        flower: Some((6.0, -12.0)),
         order: &["far_arm", "body", "flower", "arm"],
         ..REST
     },
