@@ -2,7 +2,8 @@
 
 use kurbo::{Point, Vec2};
 
-use super::{INK, Part, Spine, ellipse, radial};
+use super::shapes::{Spine, circle, curve, ellipse, radial};
+use super::{INK, Part};
 use crate::curves::{right_of, smooth_closed};
 use crate::svg::{Group, Look};
 
@@ -65,7 +66,7 @@ pub(super) fn draw(grip: Point, heading_deg: f64, bend_deg: f64) -> Part {
     group.path(
         "leaf-vein",
         Look::line(STEM, 2.5),
-        super::curve([(4.0, 32.0), (12.0, 36.0), (20.0, 41.0), (27.0, 46.0)].map(|(x, up)| stem.place(x, up))),
+        curve([(4.0, 32.0), (12.0, 36.0), (20.0, 41.0), (27.0, 46.0)].map(|(x, up)| stem.place(x, up))),
     );
     let mut landmarks = vec![
         (
@@ -89,7 +90,7 @@ pub(super) fn draw(grip: Point, heading_deg: f64, bend_deg: f64) -> Part {
     group.path(
         "flower-middle",
         Look::shaded("flower-middle-light").lined(INK, LINE),
-        super::circle(bloom, 15.0),
+        circle(bloom, 15.0),
     );
     Part { group, landmarks }
 }
