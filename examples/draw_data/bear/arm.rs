@@ -2,9 +2,9 @@
 
 use kurbo::{BezPath, Point, Vec2};
 
-use super::{
-    ArmAngles, CLOTH, CLOTH_DARK, FUR, FUR_DARK, FUR_LIGHT, INK, LINE, Part, Spine, button, curve, linear, radial,
-};
+use super::attitude::ArmAngles;
+use super::shapes::{Spine, button, curve, linear, radial};
+use super::{CLOTH, CLOTH_DARK, FUR, FUR_DARK, FUR_LIGHT, INK, LINE, Part};
 use crate::curves::{Limb, grown, hanging, right_of, smooth_closed};
 use crate::svg::{Group, Look};
 

@@ -2,10 +2,9 @@
 
 use kurbo::{BezPath, Point, Vec2};
 
-use super::{
-    Attitude, BRASS, CLOTH, CLOTH_DARK, FUR_DARK, HEIGHT, INK, LINE, Part, Spine, WIDTH, button, curve, head, linear,
-    radial,
-};
+use super::attitude::Attitude;
+use super::shapes::{Spine, button, curve, linear, radial};
+use super::{BRASS, CLOTH, CLOTH_DARK, FUR_DARK, HEIGHT, INK, LINE, Part, WIDTH, head};
 use crate::curves::{at, grown, smooth_closed, smooth_through};
 use crate::svg::{Group, Look};
 
@@ -220,7 +219,7 @@ fn draw_scarf(group: &mut Group, landmarks: &mut Vec<(String, Point)>, back: &Sp
         26.0,
         &[SCARF, SCARF_DARK],
     ));
-    let knot = super::ellipse(
+    let knot = super::shapes::ellipse(
         back.place(-27.0, 204.0),
         back.place(20.0, 204.0) - back.place(0.0, 204.0),
         back.place(0.0, 186.0) - back.place(0.0, 204.0),

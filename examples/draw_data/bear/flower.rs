@@ -2,7 +2,8 @@
 
 use kurbo::{Point, Vec2};
 
-use super::{INK, Part, Spine, ellipse, radial};
+use super::shapes::{Spine, circle, curve, ellipse, radial};
+use super::{INK, Part};
 use crate::curves::{right_of, smooth_closed};
 use crate::svg::{Group, Look};
 
@@ -50,12 +51,12 @@ pub(super) fn draw(grip: Point, heading_deg: f64, bend_deg: f64) -> Part {
     group.path("stem-line", Look::line(INK, STEM_WIDTH + 2.0 * LINE), line.clone());
     group.path("stem", Look::line(STEM, STEM_WIDTH), line);
     let leaf = [
-        (1.0, 34.0),
-        (14.0, 40.0),
-        (33.0, 60.0),
-        (40.0, 72.0),
-        (20.0, 66.0),
-        (6.0, 54.0),
+        (1.0, 26.0),
+        (14.0, 30.0),
+        (31.0, 44.0),
+        (38.0, 54.0),
+        (20.0, 50.0),
+        (5.0, 42.0),
     ];
     group.path(
         "leaf",
@@ -65,14 +66,14 @@ pub(super) fn draw(grip: Point, heading_deg: f64, bend_deg: f64) -> Part {
     group.path(
         "leaf-vein",
         Look::line(STEM, 2.5),
-        super::curve([(4.0, 41.0), (12.0, 47.0), (20.0, 54.0), (27.0, 62.0)].map(|(x, up)| stem.place(x, up))),
+        curve([(4.0, 32.0), (12.0, 36.0), (20.0, 41.0), (27.0, 46.0)].map(|(x, up)| stem.place(x, up))),
     );
     let mut landmarks = vec![
         (
             "stem_end".to_owned(),
             stem.place(0.0, -STEM_BELOW - 0.5 * STEM_WIDTH - LINE),
         ),
-        ("grip".to_owned(), grip),
+        ("stem".to_owned(), grip),
         ("stem_middle".to_owned(), stem.place(0.0, 0.5 * STEM_LENGTH)),
         ("bloom".to_owned(), bloom),
     ];
@@ -89,7 +90,7 @@ pub(super) fn draw(grip: Point, heading_deg: f64, bend_deg: f64) -> Part {
     group.path(
         "flower-middle",
         Look::shaded("flower-middle-light").lined(INK, LINE),
-        super::circle(bloom, 15.0),
+        circle(bloom, 15.0),
     );
     Part { group, landmarks }
 }

@@ -2,7 +2,9 @@
 
 use kurbo::{Affine, BezPath, Point, Vec2};
 
-use super::{Attitude, FUR, FUR_DARK, FUR_LIGHT, INK, LINE, Part, curve, radial};
+use super::attitude::Attitude;
+use super::shapes::{curve, radial};
+use super::{FUR, FUR_DARK, FUR_LIGHT, INK, LINE, Part};
 use crate::curves::{at, grown, smooth_closed};
 use crate::svg::{Gradient, GradientShape, Group, Look};
 
@@ -56,7 +58,7 @@ impl Head {
 
     fn oval(&self, middle: Point, width: f64, height: f64) -> BezPath {
         let origin = self.place(0.0, 0.0);
-        super::ellipse(
+        super::shapes::ellipse(
             middle,
             self.place(width, 0.0) - origin,
             self.place(0.0, height) - origin,
