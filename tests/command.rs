@@ -283,22 +283,6 @@ fn a_sprite_sheet_is_two_files_or_none() {
     let message = workshop.fails(&["render", "scene.toml", "-o", "a.png", "--format", "sprites"], 1);
     assert!(message.contains("a.json"), "{message}");
     std::fs::remove_dir(workshop.path("a.json")).expect("removed");
-    let message = workshop.fails(
-        &[
-            "render",
-            "scene.toml",
-            "-o",
-            "a.png",
-            "--format",
-            "sprites",
-            "--size",
-            "16384x16384",
-            "--frames",
-            "1",
-        ],
-        1,
-    );
-    assert!(message.contains("--size"), "{message}");
     assert_eq!(workshop.listing(), before);
     workshop.succeeds(&["render", "scene.toml", "-o", "a.png", "--format", "sprites"]);
     let table: serde_json::Value = serde_json::from_slice(&bytes(&workshop, "a.json")).expect("JSON");

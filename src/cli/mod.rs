@@ -92,6 +92,7 @@ impl Verbosity {
 
 /// Runs the command line.
 pub(crate) fn run() -> ExitCode {
+    fail_on_long_files();
     let arguments = Arguments::parse();
     let verbosity = if arguments.quiet {
         Verbosity::Quiet
@@ -117,6 +118,16 @@ pub(crate) fn run() -> ExitCode {
     };
     let _ = writeln!(std::io::stderr(), "inbetween: {message}");
     ExitCode::from(code)
+}
+
+/// A file that grows beyond what the system allows (`ulimit -f`) is an error that is told, not the end of the process.
+fn fail_on_long_files() {
+    #[cfg(unix)]
+    {
+        // Any handler makes the write fail; nobody looks at the flag.
+        let flag = std::sync::Arc::default();
+        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, flag);
+    }
 }
 
 /// The error and its causes, left out where the text above already says them.

@@ -120,9 +120,10 @@ impl VideoWriter {
     /// [`ExportError`] if ffmpeg or the system fails.
     pub fn finish(mut self) -> Result<(), ExportError> {
         drop(self.program.0.stdin.take());
-        match self.program.0.wait() {
-            Ok(status) if status.success() => {}
-            _ => return Err(self.failure()),
+        let is_success = self.program.0.wait().is_ok_and(|status| status.success());
+        // Some versions call it a success when the disk is full at the very end, but say so.
+        if !is_success || !self.last_lines().is_empty() {
+            return Err(self.failure());
         }
         self.file.commit()
     }
@@ -230,7 +231,7 @@ fn input_arguments([width, height]: [usize; 2], rate: Rate) -> Vec<String> {
     let size = format!("{width}x{height}");
     let rate = format!("{}/{}", rate.frames, rate.seconds);
     let words = [
-        "-hide_banner -loglevel error -nostdin -y -f rawvideo -pixel_format rgba -video_size",
+        "-hide_banner -loglevel error -xerror -nostdin -y -f rawvideo -pixel_format rgba -video_size",
         &size,
         "-framerate",
         &rate,

@@ -403,8 +403,8 @@ fn near(colours: &[Colour]) -> Vec<Vec<u8>> {
                 (least, most)
             };
             let bar = colours.iter().map(|colour| reach(colour).1).min().unwrap_or(0);
-            let close = (0u8..).zip(colours).filter(|(_, colour)| reach(colour).0 <= bar);
-            close.map(|(entry, _)| entry).collect()
+            let close = colours.iter().enumerate().filter(|(_, colour)| reach(colour).0 <= bar);
+            close.map(|(entry, _)| entry as u8).collect()
         })
         .collect()
 }

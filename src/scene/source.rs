@@ -25,13 +25,21 @@ pub(super) fn leaves_folder(source: &str) -> Option<&'static str> {
 }
 
 impl Scene {
-    /// Every file that the scene is read from besides its own, in an order that depends on the scene file alone.
+    /// Every file that the scene is read from besides its own, each once, in an order that depends on the scene file alone.
     ///
     /// # Errors
     /// As [`Self::source_path`].
     pub fn source_files(&self) -> Result<Vec<PathBuf>, SceneError> {
-        let drawn = self.drawn_poses();
-        drawn.into_iter().map(|pose| self.source_path(pose)).collect()
+        let mut files: Vec<PathBuf> = Vec::new();
+        for scene in std::iter::once(self).chain(self.layers.iter().map(|layer| &layer.scene)) {
+            for pose in scene.drawn_poses() {
+                let file = scene.source_path(pose)?;
+                if !files.contains(&file) {
+                    files.push(file);
+                }
+            }
+        }
+        Ok(files)
     }
 
     /// The path of the drawing that pose `index` shows, with every symbolic link resolved.
