@@ -55,10 +55,12 @@ impl LottieWriter<'_> {
             let mut dashes: Vec<Value> = (0..count)
                 .map(|k| {
                     let lengths: Vec<f64> = stroke.dashes.iter().map(|dashes| dashes[k]).collect();
-                    json!({"n": if k % 2 == 0 { "d" } else { "g" }, "v": self.length(&lengths, seen)})
+                    let kind = if k % 2 == 0 { "d" } else { "g" };
+                    json!({"n": kind, "nm": format!("dash {}", k + 1), "v": self.length(&lengths, seen)})
                 })
                 .collect();
-            dashes.push(json!({"n": "o", "v": self.length(&stroke.dash_offset, seen)}));
+            // Players tell the lengths apart by their names and refuse equal ones.
+            dashes.push(json!({"n": "o", "nm": "offset", "v": self.length(&stroke.dash_offset, seen)}));
             item.insert("d".to_owned(), Value::Array(dashes));
         }
         Value::Object(item)

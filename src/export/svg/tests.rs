@@ -18,9 +18,10 @@ fn drawn(text: &str) -> Vec<u8> {
 #[test]
 fn a_frame_is_drawn_as_our_own_rasteriser_draws_it() {
     for share in [0.0, 0.2, 0.75] {
-        let frame = everything(share);
-        let text = svg_text(&frame).expect("a frame");
-        let theirs = drawn(&text);
+        let mut frame = everything(share);
+        // The reference is built without bitmaps.
+        frame.nodes.remove(0);
+        let theirs = drawn(&svg_text(&frame).expect("a frame"));
         let ours = rasterise(&frame, 1);
         let differences = ours
             .pixels
