@@ -18,7 +18,8 @@ const STAGES: [(&str, &[&str]); 10] = [
     ("render", &["input", "matching", "pose"]),
     // The scene file names the blend's own options.
     ("scene", &["blend"]),
-    ("export", &["render"]),
+    // The runtime file holds poses and the blend's own options.
+    ("export", &["blend", "pose", "render"]),
 ];
 
 /// Items of other stages that are types or modules of types; anything lower-case is a function or a module path, which

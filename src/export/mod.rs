@@ -16,6 +16,7 @@ mod palette;
 mod pending;
 mod png;
 mod puppet_motion;
+pub mod runtime;
 mod sequence;
 mod smil;
 mod spine;
