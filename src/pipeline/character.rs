@@ -9,7 +9,7 @@ use crate::math::Point;
 use crate::pose::Mapping;
 use crate::render::{Camera, Frame, PaintOptions, Painter, PoseTexture, Silhouette, Texture};
 use crate::scene::{Anchor, Animation, Background, Layout, Scene};
-use crate::texture::texture_weights;
+use crate::texture::shared_texture_weights;
 use crate::weights::WeightProvider;
 
 /// How many places of the animation the camera looks at before it chooses its distance.
@@ -110,7 +110,7 @@ impl Character {
     pub fn frame_of(&self, weights: &[f64]) -> Result<Frame, PipelineError> {
         let weights = weighting::checked_weights(weights, self.mapping.poses.names())?;
         let (positions, _) = self.shape_of(&weights)?;
-        let shown = texture_weights(&weights, self.texture_sharpness)?;
+        let shown = shared_texture_weights(&weights, self.painter.texture_of(), self.texture_sharpness)?;
         let mut frame = self.painter.paint(&positions, &weights, &shown);
         if let Background::Colour(colour) = self.background {
             frame.put_before(colour);
