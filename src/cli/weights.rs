@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use anyhow::{Context as _, anyhow};
 use inbetween::pipeline::{laid_out, weight_provider};
 use inbetween::scene::{Provider, Scene};
-use inbetween::texture::texture_weights;
+use inbetween::texture::shared_texture_weights;
 use serde::Serialize;
 
 use super::Failure;
@@ -71,7 +71,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut weights = Vec::new();
     for Numbers(place) in &arguments.at {
         provider.weights(place, &mut weights)?;
-        let shown = texture_weights(&weights, scene.texture_sharpness)?;
+        let shown = shared_texture_weights(&weights, &scene.originals(), scene.texture_sharpness)?;
         text.push_str(&serde_json::to_string(&WeightsText {
             weights: &weights,
             texture_weights: &shown,

@@ -5,7 +5,7 @@ use super::layer::{LayerShape, PosedLayer};
 use crate::math::Point;
 use crate::render::Camera;
 use crate::scene::{Animation, Scene};
-use crate::texture::texture_weights;
+use crate::texture::shared_texture_weights;
 use crate::weights::WeightProvider;
 
 /// How many places of the animation the camera looks at before it chooses its distance.
@@ -17,6 +17,8 @@ pub(super) struct Figure {
     pub(super) layers: Vec<LayerShape>,
     /// Per pose of the scene, the layers from back to front.
     draw_orders: Vec<Vec<usize>>,
+    /// Per pose of the scene, the one whose drawing it shows.
+    originals: Vec<usize>,
     texture_sharpness: f64,
 }
 
@@ -43,13 +45,14 @@ impl Figure {
         Self {
             draw_orders: draw_orders(scene, layers.len()),
             layers,
+            originals: scene.originals(),
             texture_sharpness: scene.texture_sharpness,
         }
     }
 
     /// The shapes for weights that sum to 1.
     pub(super) fn posed(&self, weights: &[f64]) -> Result<Posed, PipelineError> {
-        let shown = texture_weights(weights, self.texture_sharpness)?;
+        let shown = shared_texture_weights(weights, &self.originals, self.texture_sharpness)?;
         let mut layers: Vec<PosedLayer> = (self.layers.iter())
             .map(|shape| shape.posed(weights, &shown, self.texture_sharpness))
             .collect::<Result<_, _>>()?;

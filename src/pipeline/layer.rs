@@ -13,7 +13,7 @@ use crate::mesh::PointLocator;
 use crate::pose::Mapping;
 use crate::render::Silhouette;
 use crate::scene::{LayerAnchor, Scene, SceneLayer};
-use crate::texture::{TextureError, texture_weights};
+use crate::texture::{TextureError, shared_texture_weights};
 
 /// A layer of a scene, or the whole of a scene without layers.
 pub(super) struct Part<'a> {
@@ -96,6 +96,7 @@ impl Part<'_> {
         Ok(LayerShape {
             name: self.name.clone(),
             poses: self.poses.clone(),
+            originals: self.scene.originals(),
             silhouette: Silhouette::new(&mapping),
             mapping,
             blend,
@@ -151,6 +152,8 @@ fn shape_point(scene: &Scene, anchor: &LayerAnchor, shape: &LayerShape, poses: &
 pub struct LayerShape {
     name: String,
     poses: Vec<usize>,
+    /// For each of its poses, the one whose drawing it shows.
+    originals: Vec<usize>,
     pub(super) silhouette: Silhouette,
     mapping: Mapping,
     blend: RigidBlend,
@@ -240,7 +243,8 @@ impl LayerShape {
             return Ok((shown.to_vec(), 1.0));
         }
         let opacity: f64 = self.poses.iter().filter_map(|&pose| shown.get(pose)).sum();
-        Ok((texture_weights(own, sharpness)?, opacity.clamp(0.0, 1.0)))
+        let own = shared_texture_weights(own, &self.originals, sharpness)?;
+        Ok((own, opacity.clamp(0.0, 1.0)))
     }
 
     /// By how much the layer, posed as `own`, must be moved to hang where it belongs on `other`.

@@ -32,6 +32,20 @@ pub struct LayerAnchor {
 }
 
 impl Scene {
+    /// For each pose the one whose drawing it shows: itself, or the pose that it is a deformed copy of in the end.
+    #[must_use]
+    pub fn originals(&self) -> Vec<usize> {
+        let original = |pose: usize| {
+            let mut own = self.drawing_of(pose).map(|(original, _)| original);
+            for layer in &self.layers {
+                let here = layer.poses.iter().position(|&p| p == pose);
+                own = own.or_else(|| here.map(|here| layer.poses[layer.scene.originals()[here]]));
+            }
+            own.unwrap_or(pose)
+        };
+        (0..self.poses.len()).map(original).collect()
+    }
+
     /// The layer of this name.
     #[must_use]
     pub fn layer(&self, name: &str) -> Option<&SceneLayer> {
