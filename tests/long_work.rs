@@ -160,7 +160,12 @@ fn frames_of_another_scene_or_other_settings_are_rendered_again() {
     assert_eq!(resumed(&[]), 2);
     assert!(files(&workshop.path("f")) == first);
     // Other settings, another drawing, another scene file.
-    for other in [["--size", "80x60"], ["--fps", "30"], ["--background", "black"]] {
+    for other in [
+        ["--size", "80x60"],
+        ["--fps", "30"],
+        ["--background", "black"],
+        ["--supersample", "2"],
+    ] {
         assert_eq!(resumed(&other), 0, "{other:?}");
         assert_eq!(resumed(&other), 4, "{other:?}");
         assert_eq!(resumed(&[]), 0, "{other:?}");

@@ -8,7 +8,7 @@ use inbetween::pipeline::{Character, checked_weights, laid_out};
 use inbetween::scene::{Background, Scene};
 
 use super::output::Output;
-use super::values::{Grid, Numbers, background};
+use super::values::{Grid, Numbers, background, supersample};
 use super::{Failure, Verbosity};
 
 /// Render one frame of a scene
@@ -44,6 +44,9 @@ pub(crate) struct Arguments {
     /// What is behind the character: transparent, white, black, #rrggbb or #rrggbbaa; the scene's otherwise
     #[arg(long, value_name = "COLOUR", value_parser = background)]
     background: Option<Background>,
+    /// Final quality: look at K x K points of each pixel, K from 1 to 4
+    #[arg(long, value_name = "K", default_value = "1", value_parser = supersample)]
+    supersample: usize,
 }
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
@@ -70,7 +73,8 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     let size = arguments
         .size
         .map_or(scene.animation.size.map(|side| side as usize), |grid| grid.0);
-    let character = Character::new(&scene, size).with_context(|| scene.file.display().to_string())?;
+    let character = Character::supersampled(&scene, size, arguments.supersample)
+        .with_context(|| scene.file.display().to_string())?;
     for note in character.notes() {
         verbosity.note(&format!("note: {note}"));
     }

@@ -116,6 +116,14 @@ pub(crate) fn pixels(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Samples a pixel, in each direction.
+pub(crate) fn supersample(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(samples) if (1..=4).contains(&samples) => Ok(samples),
+        _ => Err(format!("'{text}' is no number of samples from 1 to 4")),
+    }
+}
+
 /// A number of threads.
 pub(crate) fn thread_count(text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {

@@ -6,15 +6,19 @@
 
 use anyhow::Context as _;
 use inbetween::export::Label;
-use inbetween::scene::{Background, Scene};
+use inbetween::scene::Background;
 use sha2::{Digest as _, Sha256};
+
+use super::job::Job;
 
 /// The hash that all frames of one run share.
 pub(super) struct Fingerprint(Sha256);
 
 impl Fingerprint {
-    /// Reads every file of `scene`, in which what the command line says is in the place of what the file says.
-    pub(super) fn of(scene: &Scene) -> anyhow::Result<Self> {
+    /// Reads every file of `scene`, in which what the command line says is in the place of what the file says; what only the
+    /// command line says is in `job`.
+    pub(super) fn of(job: &Job<'_>) -> anyhow::Result<Self> {
+        let scene = job.scene;
         let mut fingerprint = Self(Sha256::new());
         fingerprint.add(concat!("inbetween ", env!("CARGO_PKG_VERSION")).as_bytes());
         let sources = scene.source_files()?;
@@ -29,6 +33,7 @@ impl Fingerprint {
             Background::Transparent => fingerprint.add(b"transparent"),
             Background::Colour(colour) => fingerprint.add(&colour),
         }
+        fingerprint.add(&job.supersample.to_le_bytes());
         Ok(fingerprint)
     }
 

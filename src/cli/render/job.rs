@@ -19,6 +19,8 @@ pub(super) struct Job<'a> {
     pub(super) scene: &'a Scene,
     /// The frames that are wanted, from 1, in order.
     pub(super) numbers: Vec<usize>,
+    /// Into how many samples a pixel is divided, in each direction.
+    pub(super) supersample: usize,
     /// Whether frames that are there already are left out.
     pub(super) resume: bool,
     /// How progress is told.
@@ -52,7 +54,7 @@ impl Job<'_> {
     /// The scene's character; its notes are told.
     pub(super) fn character(&self) -> anyhow::Result<Character> {
         let file = || self.scene.file.display().to_string();
-        let character = Character::new(self.scene, self.size()).with_context(file)?;
+        let character = Character::supersampled(self.scene, self.size(), self.supersample).with_context(file)?;
         for note in character.notes() {
             self.verbosity.note(&format!("note: {note}"));
         }

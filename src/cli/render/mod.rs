@@ -20,7 +20,7 @@ use inbetween::scene::{Background, Scene};
 use self::format::Format;
 use self::job::Job;
 use super::progress::ProgressKind;
-use super::values::{FrameNumbers, Grid, background, frame_rate, pixels, thread_count};
+use super::values::{FrameNumbers, Grid, background, frame_rate, pixels, supersample, thread_count};
 use super::{Failure, Verbosity};
 
 /// Render the animation of a scene
@@ -58,6 +58,9 @@ pub(crate) struct Arguments {
     /// What is behind the character: transparent, white, black, #rrggbb or #rrggbbaa; the scene's otherwise
     #[arg(long, value_name = "COLOUR", value_parser = background)]
     background: Option<Background>,
+    /// Final quality: look at K x K points of each pixel, K from 1 to 4
+    #[arg(long, value_name = "K", default_value = "1", value_parser = supersample)]
+    supersample: usize,
     /// How many threads; as many as there are cores otherwise
     #[arg(long, value_name = "N", value_parser = thread_count)]
     threads: Option<usize>,
@@ -131,6 +134,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         output: &arguments.output,
         scene: &scene,
         numbers,
+        supersample: arguments.supersample,
         resume: arguments.resume,
         progress: arguments.progress,
         max_error: arguments.max_error,

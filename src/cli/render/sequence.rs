@@ -8,7 +8,7 @@ use super::job::Job;
 
 pub(super) fn run(mut job: Job<'_>) -> anyhow::Result<()> {
     let sequence = Sequence::create(job.output, &job.scene.short_name())?;
-    let fingerprint = Fingerprint::of(job.scene)?;
+    let fingerprint = Fingerprint::of(&job)?;
     if job.resume {
         let wanted = job.numbers.len();
         let there = |number: &usize| sequence.path(*number).exists();
