@@ -230,9 +230,9 @@ fn a_full_disk_is_an_error_and_leaves_nothing() {
     std::fs::create_dir(workshop.path("disk")).expect("a folder");
     // In a mount namespace of its own, so that nothing is left mounted.
     let script = format!(
-        "mount -t tmpfs -o size=40k tmpfs disk || exit 77; \
+        "mount -t tmpfs -o size=12k tmpfs disk || exit 77; \
          for output in frames a.gif a.webp $(command -v ffmpeg > /dev/null && echo a.mp4 a.webm); do \
-             '{}' render scene.toml -o disk/$output --size 901x701 --background '#abc123'; \
+             '{}' render scene.toml -o disk/$output --size 901x701 --frames 1-20 --background '#abc123'; \
              echo $output $? $(ls -A disk); rm -rf disk/* disk/.inb*; \
          done",
         env!("CARGO_BIN_EXE_inbetween")
