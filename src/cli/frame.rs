@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use inbetween::export::png_bytes;
+use inbetween::export::{png_bytes, svg_text};
 use inbetween::pipeline::{Character, checked_weights, laid_out};
 use inbetween::scene::{Background, Scene};
 
@@ -19,7 +19,8 @@ use super::{Failure, Verbosity};
 #[command(after_help = "\
 Examples:
   inbetween frame walker/scene.toml --at 0.5,0.5 -o between.png
-  inbetween frame walker/scene.toml --weights 0.5,0.5,0,0,0 -o half.png")]
+  inbetween frame walker/scene.toml --weights 0.5,0.5,0,0,0 -o half.png
+  inbetween frame face/scene.toml --at 0.5,0.5 -o between.svg")]
 pub(crate) struct Arguments {
     /// The scene file
     scene: PathBuf,
@@ -35,7 +36,7 @@ pub(crate) struct Arguments {
     /// Weights, one a pose
     #[arg(long, value_name = "W0,W1,...", allow_hyphen_values = true)]
     weights: Option<Numbers>,
-    /// The picture, a .png file, or - for standard output
+    /// The picture, a .png or .svg file, or - for a PNG on standard output
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// Columns and rows, such as 1920x1080; the scene's otherwise
@@ -51,9 +52,10 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
     let suffix = arguments.output.extension().map(|s| s.to_string_lossy().to_lowercase());
-    if arguments.output.as_os_str() != "-" && suffix.as_deref() != Some("png") {
+    let as_curves = suffix.as_deref() == Some("svg");
+    if arguments.output.as_os_str() != "-" && suffix.as_deref() != Some("png") && !as_curves {
         return Err(Failure::Usage(format!(
-            "{}: a frame is written as .png; name the file so",
+            "{}: a frame is written as .png or .svg; name the file so",
             arguments.output.display()
         )));
     }
@@ -89,7 +91,11 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
             posed.flipped()
         ));
     }
-    let bytes = png_bytes(&character.paint(&posed))
-        .map_err(|reason| anyhow::anyhow!("{}: {reason}", arguments.output.display()))?;
+    let bytes = if as_curves {
+        svg_text(&character.draw(&posed))?.into_bytes()
+    } else {
+        png_bytes(&character.paint(&posed))
+            .map_err(|reason| anyhow::anyhow!("{}: {reason}", arguments.output.display()))?
+    };
     Ok(output.write(&bytes)?)
 }

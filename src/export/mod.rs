@@ -35,10 +35,10 @@ pub use palette::{ColourCount, Palette};
 pub use pending::PendingFile;
 pub use png::{Label, png_bytes, png_bytes_with};
 pub use puppet_motion::{PuppetMotion, PuppetReport};
-pub use sequence::Sequence;
+pub use sequence::{Sequence, SequenceKind};
 pub use spine::{SpineFiles, spine_files, write_spine};
 pub use sprites::SpriteSheet;
-pub use svg::svg_text;
+pub use svg::{svg_text, svg_text_with};
 pub use webp::WebPWriter;
 
 use std::path::{Path, PathBuf};

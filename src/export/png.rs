@@ -13,7 +13,7 @@ const SEARCHED: u64 = 4096;
 /// The chunk that ends a PNG file.
 const END: [u8; 12] = [0, 0, 0, 0, b'I', b'E', b'N', b'D', 0xae, 0x42, 0x60, 0x82];
 
-/// What a frame was made from, in as many letters as it takes to tell it from all others: a hash. Kept inside the PNG file.
+/// What a frame was made from, in as many letters as it takes to tell it from all others: a hash. Kept inside the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Label(String);
 
@@ -26,6 +26,24 @@ impl Label {
                 .filter(|c| c.is_ascii_alphanumeric() || *c == ' ')
                 .collect(),
         )
+    }
+
+    /// The comment that ends an SVG file with this label.
+    pub(super) fn comment(&self) -> String {
+        format!("<!-- {KEYWORD} {} -->\n", self.0)
+    }
+
+    /// Whether there is a whole SVG file with this label at `path`.
+    pub(super) fn is_on_svg(&self, path: &Path) -> bool {
+        let wanted = format!("</svg>\n{}", self.comment());
+        let read = || -> std::io::Result<bool> {
+            let mut file = File::open(path)?;
+            let mut end = vec![0; wanted.len()];
+            file.seek(SeekFrom::End(-(end.len() as i64)))?;
+            file.read_exact(&mut end)?;
+            Ok(end == wanted.as_bytes())
+        };
+        read().unwrap_or(false)
     }
 
     /// Whether there is a whole PNG file with this label at `path`.

@@ -8,6 +8,7 @@ mod job;
 mod mesh;
 mod sequence;
 mod sprites;
+mod vector;
 mod video;
 mod webp;
 
@@ -90,7 +91,10 @@ fn writer(format: Format) -> Option<Writer> {
         Format::WebM => Some(video::webm),
         Format::Glb => Some(mesh::glb),
         Format::Spine => Some(mesh::spine),
-        Format::Svg | Format::SvgSequence | Format::Lottie | Format::Runtime => None,
+        Format::Svg => Some(vector::svg),
+        Format::SvgSequence => Some(sequence::curves),
+        Format::Lottie => Some(vector::lottie),
+        Format::Runtime => None,
     }
 }
 

@@ -1,13 +1,31 @@
-//! Numbered PNG files.
+//! Numbered files, PNG or SVG.
 
-use inbetween::export::Sequence;
+use inbetween::export::{Label, Sequence, SequenceKind};
+use inbetween::pipeline::{Character, Posed};
 use rayon::prelude::*;
 
 use super::fingerprint::Fingerprint;
 use super::job::Job;
 
-pub(super) fn run(mut job: Job<'_>) -> anyhow::Result<()> {
-    let sequence = Sequence::create(job.output, &job.scene.short_name())?;
+/// Writes a frame where it belongs.
+type Write = fn(&Sequence, usize, &Character, &Posed, &Label) -> anyhow::Result<()>;
+
+/// Writes PNG files.
+pub(super) fn run(job: Job<'_>) -> anyhow::Result<()> {
+    written(job, SequenceKind::Png, |sequence, number, character, posed, label| {
+        Ok(sequence.write(number, &character.paint(posed), label)?)
+    })
+}
+
+/// Writes SVG files.
+pub(super) fn curves(job: Job<'_>) -> anyhow::Result<()> {
+    written(job, SequenceKind::Svg, |sequence, number, character, posed, label| {
+        Ok(sequence.write_curves(number, &character.draw(posed), label)?)
+    })
+}
+
+fn written(mut job: Job<'_>, kind: SequenceKind, write: Write) -> anyhow::Result<()> {
+    let sequence = Sequence::create(job.output, &job.scene.short_name(), kind)?;
     let fingerprint = Fingerprint::of(&job)?;
     if job.resume {
         let wanted = job.numbers.len();
@@ -31,8 +49,8 @@ pub(super) fn run(mut job: Job<'_>) -> anyhow::Result<()> {
     let character = job.character()?;
     let progress = job.progress();
     job.numbers.par_iter().try_for_each(|number| -> anyhow::Result<()> {
-        let frame = character.frame(job.animation(), number - 1)?;
-        sequence.write(*number, &frame, &fingerprint.label(*number))?;
+        let posed = character.posed(job.animation(), number - 1)?;
+        write(&sequence, *number, &character, &posed, &fingerprint.label(*number))?;
         progress.advance();
         Ok(())
     })?;

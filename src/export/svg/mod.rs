@@ -21,7 +21,7 @@ use base64::Engine as _;
 use element::Ids;
 use text::{curves, rings};
 
-use super::Repetition;
+use super::{Label, Repetition};
 use super::keyed::{
     Group, KeyOptions, KeyReport, KeyedError, KeyedVector, Node, Picture, Planner, SampleTiming, Shape, Siblings, runs,
     settled,
@@ -51,6 +51,14 @@ pub fn svg_text(frame: &VectorFrame) -> Result<String, KeyedError> {
     keyed.add(frame)?;
     let options = KeyOptions::default();
     Ok(document(&keyed, &options, STILL_DECIMALS).0)
+}
+
+/// The same with a label in a comment at its end.
+///
+/// # Errors
+/// As [`svg_text`].
+pub fn svg_text_with(frame: &VectorFrame, label: &Label) -> Result<String, KeyedError> {
+    Ok(svg_text(frame)? + &label.comment())
 }
 
 /// A sampled drawing as a document, with `decimals` of lengths.
