@@ -1,5 +1,7 @@
 //! A finished picture.
 
+use crate::math::vectorised;
+
 /// A premultiplied RGBA picture.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Frame {
@@ -61,7 +63,37 @@ impl Frame {
             }
         }
     }
+
+    /// Puts another picture of the same size in front, as strong as `opacity` says: 0 changes nothing, at 1 opaque pixels of
+    /// `front` replace what was there. Where `front` is larger or smaller, the common part counts: both begin at the
+    /// upper left corner.
+    pub fn put_over(&mut self, front: &Frame, opacity: f64) {
+        // Rounded once; NaN shows nothing.
+        let strength = (opacity.clamp(0.0, 1.0) * f64::from(WHOLE)).round() as u32;
+        if strength == 0 || self.width == 0 || front.width == 0 {
+            return;
+        }
+        let rows = self.pixels.chunks_exact_mut(self.width);
+        for (row, over) in rows.zip(front.pixels.chunks_exact(front.width)) {
+            vectorised(
+                #[inline(always)]
+                || {
+                    for (pixel, over) in row.iter_mut().zip(over) {
+                        // Each of at most WHOLE * 255; rounded together, so that colours stay below alpha.
+                        let through = WHOLE * 255 - u32::from(over[3]) * strength;
+                        for (behind, front) in pixel.iter_mut().zip(over) {
+                            let sum = u32::from(*front) * strength * 255 + u32::from(*behind) * through;
+                            *behind = ((sum + WHOLE * 255 / 2) / (WHOLE * 255)).min(255) as u8;
+                        }
+                    }
+                },
+            );
+        }
+    }
 }
+
+/// A whole opacity: with it, sums of two channels times 255 fit 32 bits.
+const WHOLE: u32 = 1 << 14;
 
 impl std::fmt::Debug for Frame {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -80,6 +112,7 @@ fn premultiplied([r, g, b, a]: [u8; 4]) -> [u8; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn straight_undoes_premultiplied() {
@@ -94,5 +127,63 @@ mod tests {
         let mut frame = Frame::filled(1, 1, [255, 0, 0, 128]);
         frame.put_before([255, 255, 255, 255]);
         assert_eq!(frame.pixels[0], [255, 127, 127, 255]);
+    }
+
+    #[test]
+    fn opacity_0_changes_nothing_and_1_shows_all_of_the_front() {
+        let colours: Vec<[u8; 4]> = (0..=255).map(|a| [a, a / 2, 0, a]).collect();
+        let picture = |pixels: &[[u8; 4]]| Frame {
+            width: 16,
+            height: 16,
+            pixels: pixels.to_vec(),
+        };
+        let back = picture(&colours);
+        for opacity in [0.0, -1.0, f64::NAN] {
+            let mut frame = back.clone();
+            frame.put_over(&Frame::filled(16, 16, [1, 2, 3, 255]), opacity);
+            assert_eq!(frame, back);
+        }
+        let opaque: Vec<[u8; 4]> = (0..=255).map(|c| [c, 255 - c, 7, 255]).collect();
+        for opacity in [1.0, 3.0] {
+            let mut frame = back.clone();
+            frame.put_over(&picture(&opaque), opacity);
+            assert_eq!(frame.pixels, opaque);
+            // Nothing in front, and nothing behind.
+            frame.put_over(&Frame::filled(16, 16, [0; 4]), opacity);
+            assert_eq!(frame.pixels, opaque);
+            let mut clear = Frame::filled(16, 16, [0; 4]);
+            clear.put_over(&back, opacity);
+            assert_eq!(clear, back);
+        }
+    }
+
+    #[test]
+    fn half_a_front_is_half_there_and_pictures_need_not_be_equally_large() {
+        let mut frame = Frame::filled(3, 2, [0, 0, 255, 255]);
+        frame.put_over(&Frame::filled(1, 5, [255, 0, 0, 255]), 0.5);
+        let (mixed, blue) = ([128, 0, 128, 255], [0, 0, 255, 255]);
+        assert_eq!(frame.pixels, [mixed, blue, blue, mixed, blue, blue]);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn over_agrees_with_the_formula_and_stays_premultiplied(
+            behind in prop::array::uniform4(0u8..),
+            front in prop::array::uniform4(0u8..),
+            opacity in 0.0..1.0f64,
+        ) {
+            let legal = |[r, g, b, a]: [u8; 4]| [r.min(a), g.min(a), b.min(a), a];
+            let one = |pixel| Frame { width: 1, height: 1, pixels: vec![legal(pixel)] };
+            let mut frame = one(behind);
+            frame.put_over(&one(front), opacity);
+            let found = frame.pixels[0];
+            let through = 1.0 - f64::from(legal(front)[3]) / 255.0 * opacity;
+            for k in 0..4 {
+                let expected = f64::from(legal(front)[k]) * opacity + f64::from(legal(behind)[k]) * through;
+                prop_assert!((f64::from(found[k]) - expected).abs() < 0.55, "{found:?}: {expected}");
+                prop_assert!(found[k] <= found[3]);
+            }
+        }
     }
 }

@@ -142,6 +142,12 @@ impl Painter {
         &self.camera
     }
 
+    /// Which texture each pose shows.
+    #[must_use]
+    pub fn texture_of(&self) -> &[usize] {
+        &self.texture_of
+    }
+
     /// The frame of the shape whose #vertices positions are `positions`, blended with `weights`, its textures with
     /// `texture_weights`, one a pose; those that are not positive show nothing. The background is clear.
     #[must_use]
@@ -631,6 +637,42 @@ mod tests {
         // A blend of alphas would leave a wide half-clear rim; here at most the pixels on the four sides are.
         let partly = frame.pixels.iter().filter(|p| p[3] > 0 && p[3] < 255).count();
         assert!(partly <= 4 * 32, "{partly}");
+    }
+
+    #[test]
+    fn samples_and_light_change_averages_and_nothing_else() {
+        let options = |supersample, blending| PaintOptions { blending, supersample };
+        let (plain, mapping) = painter();
+        let [a, b] = [0, 1].map(|k| &mapping.poses.positions()[k]);
+        let middle: Vec<Point> = a.iter().zip(b).map(|(p, q)| (p + q) * 0.5).collect();
+        for supersample in [0, 1, 2, 3, 4, 99] {
+            for (blending, expected) in [(ColourBlend::Plain, 128), (ColourBlend::Linear, 188)] {
+                let (painter, _) = painter_with(options(supersample, blending));
+                // A pose looks the same, its edge included.
+                let pose = painter.paint(a, &[1.0, 0.0], &[1.0, 0.0]);
+                assert!(
+                    pose == plain.paint(a, &[1.0, 0.0], &[1.0, 0.0]),
+                    "{supersample}, {blending:?}"
+                );
+                let frame = painter.paint(&middle, &[0.5, 0.5], &[0.5, 0.5]);
+                let centre = frame.pixels[30 * 60 + 30];
+                assert!(centre[0].abs_diff(expected) <= 1 && centre[3] == 255, "{centre:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn any_number_of_threads_paints_the_same() {
+        let (painter, mapping) = painter();
+        let positions = &mapping.poses.positions()[1];
+        let frames = [1, 2, 5].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .expect("threads");
+            pool.install(|| painter.paint(positions, &[0.3, 0.7], &[0.3, 0.7]))
+        });
+        assert!(frames[0] == frames[1] && frames[1] == frames[2]);
     }
 
     #[test]

@@ -72,15 +72,12 @@ pub(super) fn look_up(level: &Level, walk: &Walk, first: usize) -> Channels {
         across[lane] = right;
         down[lane] = below;
     }
-    let mut corners = [[0u32; LANES]; 4];
-    let width = level.width();
+    let (mut upper, mut lower) = ([0u64; LANES], [0u64; LANES]);
+    let (width, texels) = (level.width(), level.texels());
     for lane in 0..LANES {
         let at = index[lane] as usize;
-        let around = &level.texels()[at..at + width + 2];
-        corners[0][lane] = u32::from_le_bytes(around[0]);
-        corners[1][lane] = u32::from_le_bytes(around[1]);
-        corners[2][lane] = u32::from_le_bytes(around[width]);
-        corners[3][lane] = u32::from_le_bytes(around[width + 1]);
+        upper[lane] = pair(texels, at);
+        lower[lane] = pair(texels, at + width);
     }
     /// Every other channel: two channels are interpolated in one number, 16 bits for each.
     const PAIR: u32 = 0x00ff_00ff;
@@ -90,10 +87,16 @@ pub(super) fn look_up(level: &Level, walk: &Walk, first: usize) -> Channels {
         let (right, below) = (across[lane], down[lane]);
         let both = (right * below + 128) >> 8;
         let weights = [256 + both - right - below, right - both, below - both, both];
+        let corners = [
+            upper[lane] as u32,
+            (upper[lane] >> 32) as u32,
+            lower[lane] as u32,
+            (lower[lane] >> 32) as u32,
+        ];
         let (mut red_blue, mut green_alpha) = (0, 0);
-        for (corner, weight) in corners.iter().zip(weights) {
-            red_blue += (corner[lane] & PAIR) * weight;
-            green_alpha += ((corner[lane] >> 8) & PAIR) * weight;
+        for (corner, weight) in corners.into_iter().zip(weights) {
+            red_blue += (corner & PAIR) * weight;
+            green_alpha += ((corner >> 8) & PAIR) * weight;
         }
         channels[0][lane] = red_blue & 0xffff;
         channels[1][lane] = green_alpha & 0xffff;
@@ -101,6 +104,13 @@ pub(super) fn look_up(level: &Level, walk: &Walk, first: usize) -> Channels {
         channels[3][lane] = green_alpha >> 16;
     }
     channels
+}
+
+/// Texel `at` and the next one, the first in the lower half.
+#[inline(always)]
+fn pair(texels: &[[u8; 4]], at: usize) -> u64 {
+    let [first, second] = [texels[at], texels[at + 1]].map(u32::from_le_bytes);
+    u64::from(first) | u64::from(second) << 32
 }
 
 /// Weights as whole numbers in the same proportion that sum to [`WHOLE_WEIGHT`]; nothing if none is positive.
@@ -141,10 +151,10 @@ mod tests {
             for lane in 0..LANES {
                 let p = start + step * (3 + lane) as f64;
                 let expected = level.sample(p.x as f32, p.y as f32);
-                for k in 0..4 {
-                    let value = found[k][lane] as f32 / 256.0;
+                for (channel, expected) in found.iter().zip(expected) {
+                    let value = channel[lane] as f32 / 256.0;
                     // 255 times a 256th for either direction.
-                    prop_assert!((value - expected[k]).abs() < 2.5, "{value} for {}", expected[k]);
+                    prop_assert!((value - expected).abs() < 2.5, "{value} for {expected}");
                 }
             }
         }

@@ -2,4 +2,4 @@
 
 mod weights;
 
-pub use weights::{TextureError, texture_weights};
+pub use weights::{TextureError, shared_texture_weights, texture_weights};

@@ -8,6 +8,10 @@
 //! be 0, and wherever every `w'` is below `sigma / 2` nothing is sharpened. Here `t_i = w'_i / (w'_i + max of the other
 //! w')`, equal to the paper's for two poses (where `w'` sum to 1) and defined for every number of poses and every
 //! `sigma`: the strongest pose always has `t >= 1/2`.
+//!
+//! Poses that show the same drawing, a drawn pose and its deformed copies, are one texture: their limited weights are
+//! added first and the sums are sharpened. Otherwise a drawing would fade the more the more copies share its weight,
+//! and two drawings would be seen in one another where one of them, split over copies, is nearly all there is.
 
 use crate::math::{limit_weights, smooth_step};
 
@@ -37,6 +41,17 @@ pub enum TextureError {
 /// # Errors
 /// [`TextureError`] for weights that are not finite or of which none is positive, or a sharpness outside [0, 1].
 pub fn texture_weights(weights: &[f64], sharpness: f64) -> Result<Vec<f64>, TextureError> {
+    let each_its_own: Vec<usize> = (0..weights.len()).collect();
+    shared_texture_weights(weights, &each_its_own, sharpness)
+}
+
+/// As [`texture_weights`], for poses of which some show the same drawing: `drawing_of` says which, one number a pose. The
+/// drawings' weights are sharpened; each pose's is its part of its drawing's, in proportion to its limited weight. A pose without
+/// a number shows what no other does.
+///
+/// # Errors
+/// As [`texture_weights`].
+pub fn shared_texture_weights(weights: &[f64], drawing_of: &[usize], sharpness: f64) -> Result<Vec<f64>, TextureError> {
     if !(0.0..=1.0).contains(&sharpness) {
         return Err(TextureError::BadSharpness(sharpness));
     }
@@ -50,14 +65,25 @@ pub fn texture_weights(weights: &[f64], sharpness: f64) -> Result<Vec<f64>, Text
     if limited.iter().all(|&weight| weight == 0.0) {
         return Err(TextureError::BadWeights(weights.to_vec()));
     }
-    let sharpened: Vec<f64> = limited
-        .iter()
-        .enumerate()
-        .map(|(pose, &own)| {
-            let others = limited.iter().enumerate().filter(|(other, _)| *other != pose);
+    let shows_same = |pose: usize, other: usize| match (drawing_of.get(pose), drawing_of.get(other)) {
+        (Some(drawing), Some(others)) => drawing == others,
+        _ => pose == other,
+    };
+    // Of each pose's drawing.
+    let drawn: Vec<f64> = (0..limited.len())
+        .map(|pose| {
+            let same = limited.iter().enumerate().filter(|(other, _)| shows_same(pose, *other));
+            same.map(|(_, weight)| weight).sum()
+        })
+        .collect();
+    let sharpened: Vec<f64> = (0..limited.len())
+        .map(|pose| {
+            let own = drawn[pose];
+            let others = drawn.iter().enumerate().filter(|(other, _)| !shows_same(pose, *other));
             let strongest_other = others.map(|(_, &other)| other).fold(0.0, f64::max);
             let share = if own > 0.0 { own / (own + strongest_other) } else { 0.0 };
-            sharpness * smooth_step(share, 0.5 * sharpness, 1.0 - 0.5 * sharpness) + (1.0 - sharpness) * own
+            let part = if own > 0.0 { limited[pose] / own } else { 0.0 };
+            part * (sharpness * smooth_step(share, 0.5 * sharpness, 1.0 - 0.5 * sharpness) + (1.0 - sharpness) * own)
         })
         .collect();
     let sum: f64 = sharpened.iter().sum();
@@ -89,6 +115,32 @@ mod tests {
             }
         }
         assert_eq!(texture_weights(&[1.0], 1.0), Ok(vec![1.0]));
+    }
+
+    #[test]
+    fn a_drawing_counts_alike_however_many_poses_show_it() {
+        for sharpness in [0.0, 0.5, 0.9, 1.0] {
+            let [first, second] = texture_weights(&[0.6, 0.4], sharpness).expect("weights")[..] else {
+                panic!("two weights")
+            };
+            // The limited weights of three equal parts differ from that of their sum: compare with what adds up alike.
+            let shared = shared_texture_weights(&[0.3, 0.4, 0.3], &[7, 1, 7], sharpness).expect("weights");
+            assert!((shared.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            assert!((shared[0] - shared[2]).abs() < 1e-12);
+            // Split over poses it is no weaker than the other drawing; each for itself it would be.
+            assert!(shared[0] + shared[2] >= 0.5 && (first - second) * (shared[0] + shared[2] - shared[1]) >= 0.0);
+        }
+        let own = texture_weights(&[0.3, 0.4, 0.3], 1.0).expect("weights");
+        assert!(own[1] > own[0] + own[2], "{own:?}");
+        // A pose is its drawing, and no number is a drawing of its own.
+        assert_eq!(
+            shared_texture_weights(&[1.0, 0.0, 0.0], &[0, 0, 1], 0.8),
+            Ok(vec![1.0, 0.0, 0.0])
+        );
+        assert_eq!(
+            shared_texture_weights(&[0.5, 0.3, 0.2], &[], 0.8),
+            texture_weights(&[0.5, 0.3, 0.2], 0.8)
+        );
     }
 
     #[test]
