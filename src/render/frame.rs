@@ -39,20 +39,6 @@ impl Frame {
         bytes
     }
 
-    /// Puts another picture of the same size in front of this one, seen to the part `opacity`, from 0 to 1.
-    pub fn put_over(&mut self, front: &Self, opacity: f64) {
-        let opacity = opacity.clamp(0.0, 1.0) as f32;
-        for (below, above) in self.pixels.iter_mut().zip(&front.pixels) {
-            if above[3] == 0 {
-                continue;
-            }
-            let through = 1.0 - opacity * f32::from(above[3]) / 255.0;
-            for (b, a) in below.iter_mut().zip(above) {
-                *b = (f32::from(*a) * opacity + f32::from(*b) * through + 0.5).min(255.0) as u8;
-            }
-        }
-    }
-
     /// Puts the picture in front of a colour: red, green, blue, alpha, not premultiplied.
     pub fn put_before(&mut self, colour: [u8; 4]) {
         let back = premultiplied(colour);
