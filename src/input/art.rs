@@ -71,6 +71,13 @@ impl ArtElement {
 }
 
 impl Placement {
+    /// The map that moves nothing.
+    pub const IDENTITY: Self = Self {
+        along_x: Point::new(1.0, 0.0),
+        along_y: Point::new(0.0, 1.0),
+        origin: Point::new(0.0, 0.0),
+    };
+
     /// Where a point goes.
     #[must_use]
     pub fn place(&self, p: Point) -> Point {

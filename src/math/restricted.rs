@@ -17,16 +17,12 @@ pub fn restricted_weights(weights: &[f64], present: &[bool]) -> Vec<f64> {
         .zip(present)
         .map(|(&weight, &present)| match present {
             false => 0.0,
-            true if present_everywhere(count, weights) => weight,
+            // Then nothing is missing, but for rounding.
+            true if count == weights.len() => weight,
             true if positive > 0.0 => weight + missing * weight.max(0.0) / positive,
             true => 1.0 / count as f64,
         })
         .collect()
-}
-
-/// Then nothing is missing, but for rounding.
-fn present_everywhere(count: usize, weights: &[f64]) -> bool {
-    count == weights.len()
 }
 
 #[cfg(test)]

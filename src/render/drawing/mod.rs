@@ -3,6 +3,10 @@
 //! A [`VectorFrame`] is one frame as a tree of groups, shapes and pictures, back to front. All frames of one character have
 //! the same nodes with the same ids and equally many curves, whatever is seen of them: only numbers change, and the order of
 //! siblings where poses draw in different orders. So a format with keys can follow a node through the frames by its id.
+//!
+//! [`CarriedDrawing`] makes frames from the [`Art`](crate::input::Art) of a character's drawings; [`rasterise`] makes pixels of them.
+//! The order of drawing is that of the files; where they contradict one another, the drawing with the largest texture weight decides
+//! (of equal ones the first), and the others say where elements go that it does not have.
 
 mod alignment;
 mod binding;

@@ -87,7 +87,7 @@ impl Area {
         let right = (high.x + border).ceil().min((self.left + self.width as i64) as f64);
         let bottom = (high.y + border).ceil().min((self.top + self.height as i64) as f64);
         // Written so that NaN fails too.
-        (right > left && bottom > top).then(|| Self {
+        (right > left && bottom > top).then_some(Self {
             left: left as i64,
             top: top as i64,
             width: (right - left) as usize,
@@ -228,8 +228,8 @@ impl Canvas {
     fn dash(&self, shape: &VectorShape, stroke: &Stroke) -> Option<StrokeDash> {
         let period: f64 = stroke.dashes.iter().sum();
         let length: f64 = shape.subpaths.iter().map(hull_length).sum();
-        // Written so that NaN fails too.
-        if !(length * stroke.dashes.len() as f64 <= MOST_DASHES * period) {
+        let can_be_told_apart = length * stroke.dashes.len() as f64 <= MOST_DASHES * period;
+        if !can_be_told_apart {
             return None;
         }
         let dashes = stroke.dashes.iter().map(|dash| (dash * self.scale) as f32).collect();
@@ -409,8 +409,8 @@ fn divided_by_255(value: u32) -> u32 {
 }
 
 fn to_colour([red, green, blue, alpha]: [f64; 4], opacity: f64) -> Color {
-    // `max` first: it takes NaN away.
-    let channel = |c: f64| c.max(0.0).min(1.0) as f32;
+    // NaN stays NaN, and is then no colour.
+    let channel = |c: f64| c.clamp(0.0, 1.0) as f32;
     Color::from_rgba(channel(red), channel(green), channel(blue), channel(alpha * opacity))
         .unwrap_or(Color::TRANSPARENT)
 }

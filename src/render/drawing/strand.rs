@@ -19,8 +19,9 @@ use super::binding::{Anchor, PoseMesh};
 use crate::input::Subpath;
 use crate::math::{Point, point, rotation};
 
-/// How far a carried piece may be from the curve carried point by point, in pixels of the frame: what anti-aliasing hides.
-const TOLERANCE_PX: f64 = 0.05;
+/// How far a carried piece may be from the curve carried point by point, in pixels of the frame. A quarter of it gives twice as
+/// many curves and the same picture.
+const TOLERANCE_PX: f64 = 0.2;
 
 /// Points of a piece at which that distance is measured.
 const SAMPLES: usize = 8;
@@ -114,12 +115,6 @@ impl Strand {
         for row in self.anchors.chunks_exact_mut(self.drawing_count) {
             row[drawing] = place;
         }
-    }
-
-    /// How many cubics it has.
-    #[cfg(test)]
-    pub(super) fn cubic_count(&self) -> usize {
-        self.anchors.len() / self.drawing_count.max(1) / 3
     }
 
     /// Its points in drawing `drawing`, where the mesh lies at `positions`.

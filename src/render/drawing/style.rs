@@ -364,3 +364,104 @@ fn mean_colour(shares: &[f64], colours: impl Iterator<Item = [f64; 4]> + Clone) 
     }
     mean.map(|c| c.clamp(0.0, 1.0))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RED: [f64; 4] = [1.0, 0.0, 0.0, 1.0];
+    const BLUE: [f64; 4] = [0.0, 0.0, 1.0, 1.0];
+
+    fn filled(paint: Option<Paint>) -> ArtElement {
+        ArtElement {
+            id: None,
+            subpaths: Vec::new(),
+            fill: paint.map(|paint| Fill {
+                paint,
+                rule: FillRule::NonZero,
+            }),
+            stroke: None,
+            opacity: 1.0,
+        }
+    }
+
+    fn gradient(x: f64, stops: &[(f64, [f64; 4])]) -> Paint {
+        Paint::Gradient(Gradient {
+            kind: GradientKind::Linear,
+            placement: Placement {
+                along_x: Point::new(x, 0.0),
+                along_y: Point::new(0.0, 1.0),
+                origin: Point::zeros(),
+            },
+            spread: Spread::Pad,
+            stops: stops.iter().map(|&(offset, colour)| Stop { offset, colour }).collect(),
+        })
+    }
+
+    /// The blended fill, where nothing is carried anywhere.
+    fn blended(paints: [Option<Paint>; 2], weights: [f64; 2]) -> Paint {
+        let elements = paints.map(filled);
+        let styles = Styles::new(&elements.iter().collect::<Vec<_>>()).expect("styles that agree");
+        let (fill, _, _) = styles.at(&weights, &[Placement::IDENTITY; 2], 1.0);
+        fill.expect("a fill").paint
+    }
+
+    fn stops(paint: Paint) -> Vec<(f64, [f64; 4])> {
+        match paint {
+            Paint::Gradient(gradient) => gradient.stops.iter().map(|stop| (stop.offset, stop.colour)).collect(),
+            Paint::Solid(_) => panic!("a gradient"),
+        }
+    }
+
+    #[test]
+    fn colours_count_with_their_alpha_and_without_negative_weights() {
+        let clear_blue = [0.0, 0.0, 1.0, 0.0];
+        let solid = |colour| Some(Paint::Solid(colour));
+        assert_eq!(
+            blended([solid(RED), solid(clear_blue)], [0.5, 0.5]),
+            Paint::Solid([1.0, 0.0, 0.0, 0.5])
+        );
+        assert_eq!(
+            blended([solid(RED), None], [0.25, 0.75]),
+            Paint::Solid([1.0, 0.0, 0.0, 0.25])
+        );
+        assert_eq!(blended([solid(RED), solid(BLUE)], [1.5, -0.5]), Paint::Solid(RED));
+    }
+
+    #[test]
+    fn equally_many_stops_move_and_others_are_united() {
+        let a = gradient(1.0, &[(0.0, RED), (0.4, BLUE)]);
+        let b = gradient(3.0, &[(0.2, RED), (1.0, RED)]);
+        let half = stops(blended([Some(a.clone()), Some(b)], [0.5, 0.5]));
+        assert_eq!(half, [(0.1, RED), (0.7, [0.5, 0.0, 0.5, 1.0])]);
+        // An abrupt change at 0.5, and stops at 0 and 0.4.
+        let abrupt = gradient(3.0, &[(0.5, RED), (0.5, BLUE), (1.0, BLUE)]);
+        let united = stops(blended([Some(a.clone()), Some(abrupt.clone())], [0.0, 1.0]));
+        assert_eq!(united, [(0.0, RED), (0.4, RED), (0.5, RED), (0.5, BLUE), (1.0, BLUE)]);
+        let other_end = stops(blended([Some(a), Some(abrupt)], [1.0, 0.0]));
+        assert_eq!(
+            other_end,
+            [(0.0, RED), (0.4, BLUE), (0.5, BLUE), (0.5, BLUE), (1.0, BLUE)]
+        );
+    }
+
+    #[test]
+    fn a_plain_colour_becomes_a_gradient_where_the_gradient_lies() {
+        let a = gradient(2.0, &[(0.0, RED), (1.0, BLUE)]);
+        let blend = blended([Some(a), Some(Paint::Solid(BLUE))], [0.5, 0.5]);
+        let Paint::Gradient(gradient) = &blend else {
+            panic!("a gradient");
+        };
+        assert_eq!(gradient.placement.along_x, Point::new(2.0, 0.0));
+        assert_eq!(stops(blend), [(0.0, [0.5, 0.0, 0.5, 1.0]), (1.0, BLUE)]);
+    }
+
+    #[test]
+    fn what_cannot_change_gradually_is_refused() {
+        let mut even_odd = filled(Some(Paint::Solid(RED)));
+        if let Some(fill) = &mut even_odd.fill {
+            fill.rule = FillRule::EvenOdd;
+        }
+        assert!(Styles::new(&[&filled(Some(Paint::Solid(RED))), &even_odd]).is_err());
+    }
+}

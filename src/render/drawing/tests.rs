@@ -325,53 +325,72 @@ proptest! {
     }
 }
 
-/// The scene's own drawings, on a mesh that is the drawing's box.
+/// Lines of all kinds, dashes, gradients, even-odd holes and translucent groups of elements that do not overlap.
+const STYLES: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 300"><defs>
+    <linearGradient id="l" gradientTransform="rotate(30)"><stop offset="0.1" stop-color="#f80"/><stop offset="0.5" stop-color="#08f"
+    stop-opacity="0.5"/><stop offset="0.5" stop-color="#fff"/><stop offset="0.9" stop-color="#222"/></linearGradient>
+    <radialGradient id="r" fx="0.3" fy="0.3" spreadMethod="reflect" r="0.3"><stop stop-color="#ff0"/><stop offset="1" stop-color="#a00"/>
+    </radialGradient></defs>
+    <rect x="10" y="10" width="380" height="280" rx="20" fill="url(#l)" stroke="#123" stroke-width="7"/>
+    <g transform="rotate(10 200 150) scale(1.5)"><ellipse cx="80" cy="80" rx="50" ry="40" fill="url(#r)" stroke="url(#l)"
+    stroke-width="6" stroke-dasharray="12 5 3" stroke-linecap="round"/></g>
+    <path d="M220 60h120v120h-120z M250 90h60v60h-60z" fill="#0a5" fill-rule="evenodd" opacity="0.6" stroke="#000" stroke-width="5"
+    stroke-linejoin="bevel"/>
+    <path d="M40 260 L80 200 L120 260 Q160 180 200 260 T 280 260" fill="none" stroke="#c0f" stroke-width="9" stroke-linejoin="round"
+    stroke-linecap="square"/>
+    <g opacity="0.5"><rect x="300" y="200" width="30" height="50"/><rect x="340" y="200" width="30" height="50" fill="#fff"/></g></svg>"##;
+
 #[test]
 fn a_drawing_in_its_own_pose_looks_as_its_file() {
+    looks_as_its_file("styles", STYLES.as_bytes());
     for name in ["face/calm_left", "face/laugh_right", "snake/coil"] {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("data/{name}.svg"));
-        let bytes = std::fs::read(path).expect("a file");
-        let options = SvgOptions {
-            pixels_per_unit: Some(0.5),
-            ..SvgOptions::default()
-        };
-        let Drawing { art, picture, .. } = read_svg(&bytes, &options).expect("a drawing");
-        let corners = [[-1.0, -1.0], [1200.0, -1.0], [1200.0, 700.0], [-1.0, 700.0]];
-        let mapping = mapping(&[corners, SQUARE]);
-        let art = vec![PoseArt {
-            art: art.expect("curves"),
-            drawn_on: 0,
-        }];
-        let size = [picture.width, picture.height];
-        // A camera that shows the picture as it is: half a pixel a unit.
-        let (low, high) = (
-            picture.origin,
-            picture.origin + Point::new(size[0] as f64, size[1] as f64) * 2.0,
-        );
-        let margin = Point::repeat(Camera::MARGIN * size[0].min(size[1]) as f64 * 2.0);
-        let camera = Camera::fitting(&[low + margin, high - margin], size);
-        assert!((camera.scale() - 0.5).abs() < 1e-9);
-        let (carried, _) = CarriedDrawing::new(&mapping, art, vec![0], Silhouette::new(&mapping), camera);
-        let frame = VectorFrame {
-            size,
-            background: None,
-            nodes: carried.frame(&mapping.poses.positions()[0], &[1.0], &[1.0]),
-        };
-        let drawn = rasterise(&frame, 1);
-        let differences: Vec<u8> = drawn
-            .pixels
-            .iter()
-            .zip(&picture.pixels)
-            .map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0))
-            .collect();
-        let worst = differences.iter().copied().max().unwrap_or(0);
-        let far = differences.iter().filter(|difference| **difference > 8).count();
-        assert!(
-            worst <= 40 && far * 1000 < differences.len(),
-            "{name}: worst {worst}, {far} of {}",
-            differences.len()
-        );
+        looks_as_its_file(name, &std::fs::read(path).expect("a file"));
     }
+}
+
+/// Compares with what resvg makes of the file. The mesh is a box around the drawing.
+fn looks_as_its_file(name: &str, bytes: &[u8]) {
+    let options = SvgOptions {
+        pixels_per_unit: Some(0.5),
+        ..SvgOptions::default()
+    };
+    let Drawing { art, picture, .. } = read_svg(bytes, &options).expect("a drawing");
+    let corners = [[-1.0, -1.0], [1200.0, -1.0], [1200.0, 700.0], [-1.0, 700.0]];
+    let mapping = mapping(&[corners, SQUARE]);
+    let art = vec![PoseArt {
+        art: art.expect("curves"),
+        drawn_on: 0,
+    }];
+    let size = [picture.width, picture.height];
+    // A camera that shows the picture as it is: half a pixel a unit.
+    let (low, high) = (
+        picture.origin,
+        picture.origin + Point::new(size[0] as f64, size[1] as f64) * 2.0,
+    );
+    let margin = Point::repeat(Camera::MARGIN * size[0].min(size[1]) as f64 * 2.0);
+    let camera = Camera::fitting(&[low + margin, high - margin], size);
+    assert!((camera.scale() - 0.5).abs() < 1e-9);
+    let (carried, _) = CarriedDrawing::new(&mapping, art, vec![0], Silhouette::new(&mapping), camera);
+    let frame = VectorFrame {
+        size,
+        background: None,
+        nodes: carried.frame(&mapping.poses.positions()[0], &[1.0], &[1.0]),
+    };
+    let drawn = rasterise(&frame, 1);
+    let differences: Vec<u8> = drawn
+        .pixels
+        .iter()
+        .zip(&picture.pixels)
+        .map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0))
+        .collect();
+    let worst = differences.iter().copied().max().unwrap_or(0);
+    let far = differences.iter().filter(|difference| **difference > 8).count();
+    assert!(
+        worst <= 40 && far * 1000 < differences.len(),
+        "{name}: worst {worst}, {far} of {}",
+        differences.len()
+    );
 }
 
 fn element(points: &[[f64; 2]]) -> ArtElement {
