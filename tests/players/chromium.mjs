@@ -6,7 +6,7 @@
 // with what is transparent left so. playwright-core and lottie-web are looked for in $PLAYERS/node_modules, Chromium at
 // $CHROMIUM.
 import { createRequire } from 'node:module';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import { tmpdir } from 'node:os';
 import { pathToFileURL } from 'node:url';
@@ -29,7 +29,7 @@ const context = await chromium.launchPersistentContext(profile, {
   viewport: { width, height },
   deviceScaleFactor: 1,
   args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
-    '--disable-component-update', '--disable-sync', '--force-color-profile=srgb', '--hide-scrollbars'],
+    '--disable-component-update', '--disable-sync', '--force-color-profile=srgb', '--disable-dev-shm-usage', '--hide-scrollbars'],
 });
 let failed = false;
 try {
@@ -39,19 +39,21 @@ try {
     await page.goto(pathToFileURL(resolve(file)).href);
     await page.evaluate(() => document.documentElement.pauseAnimations());
   } else {
-    await page.setContent('<body style="margin:0;overflow:hidden;background:transparent"><div id="stage"></div></body>');
-    await page.addStyleTag({ content: `#stage{width:${width}px;height:${height}px}` });
-    await page.addScriptTag({ path: join(players, 'node_modules', 'lottie-web', 'build', 'player', 'lottie_svg.js') });
-    const data = JSON.parse(readFileSync(file, 'utf8'));
-    await page.evaluate((animationData) => new Promise((done, refuse) => {
+    // Files, because what goes through the protocol must be small.
+    const script = pathToFileURL(join(players, 'node_modules', 'lottie-web', 'build', 'player', 'lottie_svg.js')).href;
+    writeFileSync(join(profile, 'data.js'), `window.drawing = ${readFileSync(file, 'utf8')};`);
+    writeFileSync(join(profile, 'page.html'), `<!doctype html><body style="margin:0;overflow:hidden;background:transparent">
+      <div id="stage" style="width:${width}px;height:${height}px"></div><script src="${script}"></script><script src="data.js"></script>`);
+    await page.goto(pathToFileURL(join(profile, 'page.html')).href);
+    await page.evaluate(() => new Promise((done, refuse) => {
       const player = lottie.loadAnimation({
-        container: document.getElementById('stage'), renderer: 'svg', loop: false, autoplay: false, animationData,
+        container: document.getElementById('stage'), renderer: 'svg', loop: false, autoplay: false, animationData: window.drawing,
       });
       player.addEventListener('data_failed', () => refuse(new Error('lottie-web refuses the file')));
       player.addEventListener('error', (event) => refuse(new Error(String(event.nativeError ?? event))));
       window.player = player;
       if (player.isLoaded) done(); else player.addEventListener('DOMLoaded', () => done());
-    }), data);
+    }));
   }
   for (const frame of frames) {
     await page.evaluate(async ([index, seconds]) => {

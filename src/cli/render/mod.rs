@@ -40,11 +40,11 @@ Examples:
 pub(crate) struct Arguments {
     /// The scene file
     scene: PathBuf,
-    /// A folder, or a file ending in .gif, .apng, .webp, .mp4 or .webm
+    /// A folder, or a file ending in .gif, .apng, .webp, .svg, .json (Lottie), .glb, .mp4 or .webm
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// The kind of output, where the name does not say: png (a folder), sprites (a .png with a .json beside it), gif,
-    /// apng, webp, mp4 or webm
+    /// The kind of output, where the name does not say: png (a folder), svg-sequence (a folder), sprites (a .png with a .json
+    /// beside it), gif, apng, webp, svg, lottie, glb, spine, mp4 or webm
     #[arg(long, value_name = "FORMAT")]
     format: Option<String>,
     /// Only these frames, counted from 1, such as 1-10,20
@@ -71,7 +71,7 @@ pub(crate) struct Arguments {
     /// How progress is told
     #[arg(long, value_name = "KIND", default_value = "auto")]
     progress: ProgressKind,
-    /// How far, in pixels, formats with keys may be from the frames (.glb, spine)
+    /// How far, in pixels, formats with keys may be from the frames (.svg, .json, .glb, spine)
     #[arg(long, value_name = "PX", value_parser = pixels, default_value_t = 0.5)]
     max_error: f64,
 }

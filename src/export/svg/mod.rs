@@ -21,12 +21,12 @@ use base64::Engine as _;
 use element::Ids;
 use text::{curves, rings};
 
-use super::{Label, Repetition};
 use super::keyed::{
     Group, KeyOptions, KeyReport, KeyedError, KeyedVector, Node, Picture, Planner, SampleTiming, Shape, Siblings, runs,
     settled,
 };
 use super::smil::Clock;
+use super::{Label, Repetition};
 use crate::render::drawing::{FillRule, VectorFrame};
 
 /// Decimals of lengths in a still frame.
