@@ -183,7 +183,10 @@ fn check_layer(layer: &PuppetLayer) -> Result<(), String> {
 }
 
 /// The texture as a PNG file.
-pub(super) fn texture_png(texture: &PuppetTexture) -> Result<Vec<u8>, String> {
+///
+/// # Errors
+/// The encoder's message, for a texture without pixels.
+pub fn texture_png(texture: &PuppetTexture) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, texture.width as u32, texture.height as u32);
     encoder.set_color(png::ColorType::Rgba);

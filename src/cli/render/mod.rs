@@ -27,7 +27,7 @@ use super::{Failure, Verbosity};
 /// Render the animation of a scene
 ///
 /// The kind of output is taken from OUT's name: a folder gets numbered PNG files NAME.0001.png, a name ending in .gif,
-/// .apng, .webp, .mp4 or .webm that one file (the last two need the program ffmpeg). Any subset of frames has the same
+/// .apng, .webp, .glb, .inb, .mp4 or .webm that one file (the last two need the program ffmpeg). Any subset of frames has the same
 /// bytes as in a whole run, for any number of threads. Files appear when they are complete; a run that is killed or
 /// fails leaves none that is torn.
 #[derive(clap::Args)]
@@ -40,11 +40,11 @@ Examples:
 pub(crate) struct Arguments {
     /// The scene file
     scene: PathBuf,
-    /// A folder, or a file ending in .gif, .apng, .webp, .mp4 or .webm
+    /// A folder, or a file ending in .gif, .apng, .webp, .glb, .inb, .mp4 or .webm
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// The kind of output, where the name does not say: png (a folder), sprites (a .png with a .json beside it), gif,
-    /// apng, webp, mp4 or webm
+    /// apng, webp, mp4, webm, glb (glTF), spine (a folder, or a .json with its pictures beside it) or runtime
     #[arg(long, value_name = "FORMAT")]
     format: Option<String>,
     /// Only these frames, counted from 1, such as 1-10,20
@@ -94,7 +94,7 @@ fn writer(format: Format) -> Option<Writer> {
         Format::Svg => Some(vector::svg),
         Format::SvgSequence => Some(sequence::curves),
         Format::Lottie => Some(vector::lottie),
-        Format::Runtime => None,
+        Format::Runtime => Some(mesh::runtime),
     }
 }
 
@@ -102,7 +102,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     let format = Format::of(&arguments.output, arguments.format.as_deref()).map_err(Failure::Usage)?;
     let Some(write) = writer(format) else {
         return Err(Failure::Usage(format!(
-            "{}: {} is not supported yet; choose a folder (PNG files), .gif, .apng, .webp, .mp4, .webm or --format sprites",
+            "{}: {} is not supported yet; choose a folder (PNG files), .gif, .apng, .webp, .mp4, .webm, .glb, .inb or --format sprites or spine",
             arguments.output.display(),
             format.name()
         )));
