@@ -225,6 +225,7 @@ fn a_file_that_finds_no_room_is_not_there() {
 
 #[cfg(target_os = "linux")]
 #[test]
+#[expect(clippy::print_stderr, reason = "a test that is left out says so")]
 fn a_full_disk_is_an_error_and_leaves_nothing() {
     let workshop = two();
     std::fs::create_dir(workshop.path("disk")).expect("a folder");

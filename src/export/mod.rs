@@ -34,7 +34,7 @@ pub use keys::{Keys, place_keys};
 pub use palette::{ColourCount, Palette};
 pub use pending::PendingFile;
 pub use png::{Label, png_bytes, png_bytes_with};
-pub use puppet_motion::{PuppetMotion, PuppetReport};
+pub use puppet_motion::{PuppetMotion, PuppetReport, texture_png};
 pub use sequence::{Sequence, SequenceKind};
 pub use spine::{SpineFiles, spine_files, write_spine};
 pub use sprites::SpriteSheet;

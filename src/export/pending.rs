@@ -110,7 +110,10 @@ impl PendingFile {
     }
 
     /// Writes `bytes` and commits.
-    pub(super) fn fill(mut self, bytes: &[u8]) -> Result<(), ExportError> {
+    ///
+    /// # Errors
+    /// [`ExportError`] if the system refuses; the temporary file is removed.
+    pub fn fill(mut self, bytes: &[u8]) -> Result<(), ExportError> {
         self.write_all(bytes)
             .map_err(|error| ExportError::cannot_write(&self.target, error))?;
         self.commit()

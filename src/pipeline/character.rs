@@ -1,5 +1,7 @@
 //! A character ready to be shown in any pose.
 
+mod runtime;
+
 use rayon::prelude::*;
 
 use super::art::LayerArt;

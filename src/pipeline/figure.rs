@@ -50,6 +50,11 @@ impl Figure {
         }
     }
 
+    /// Per pose of the scene, the layers from back to front.
+    pub(super) fn draw_orders(&self) -> &[Vec<usize>] {
+        &self.draw_orders
+    }
+
     /// The shapes for weights that sum to 1.
     pub(super) fn posed(&self, weights: &[f64]) -> Result<Posed, PipelineError> {
         let shown = shared_texture_weights(weights, &self.originals, self.texture_sharpness)?;

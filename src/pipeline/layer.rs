@@ -6,7 +6,7 @@
 
 use super::blending::blend_options;
 use super::{MappingReport, PipelineError, ShapePoint, map_drawings, read_drawings};
-use crate::blend::{BlendReport, RigidBlend};
+use crate::blend::{BlendOptions, BlendReport, RigidBlend};
 use crate::input::Drawing;
 use crate::math::{Point, restricted_weights};
 use crate::mesh::PointLocator;
@@ -85,8 +85,8 @@ impl Part<'_> {
 
     /// The layer's shape, not yet hung on another one.
     pub(super) fn shape(&self, mapping: Mapping, notes: &mut Vec<String>) -> Result<LayerShape, PipelineError> {
-        let blend = RigidBlend::new(&mapping.poses, &blend_options(self.scene, &mapping))
-            .map_err(|error| self.refusal(error.into()))?;
+        let options = blend_options(self.scene, &mapping);
+        let blend = RigidBlend::new(&mapping.poses, &options).map_err(|error| self.refusal(error.into()))?;
         if blend.turns_are_ambiguous() {
             notes.push(self.remark(
                 "some poses are turned by half a turn against one another, so either way round is as good; \
@@ -99,6 +99,7 @@ impl Part<'_> {
             originals: self.scene.originals(),
             silhouette: Silhouette::new(&mapping),
             mapping,
+            options,
             blend,
             tie: None,
         })
@@ -156,6 +157,7 @@ pub struct LayerShape {
     originals: Vec<usize>,
     pub(super) silhouette: Silhouette,
     mapping: Mapping,
+    options: BlendOptions,
     blend: RigidBlend,
     tie: Option<Tie>,
 }
@@ -216,6 +218,17 @@ impl LayerShape {
             .iter()
             .filter_map(|&pose| shared.get(pose).copied())
             .collect()
+    }
+
+    /// How its poses are blended.
+    #[must_use]
+    pub fn options(&self) -> &BlendOptions {
+        &self.options
+    }
+
+    /// The layer that it hangs on, its own point and the other layer's.
+    pub(super) fn tie_points(&self) -> Option<(usize, &ShapePoint, &ShapePoint)> {
+        self.tie.as_ref().map(|tie| (tie.to, &tie.own, &tie.other))
     }
 
     /// The layer that it hangs on.

@@ -89,6 +89,11 @@ impl ShapePoint {
         Some(Self { anchors })
     }
 
+    /// Per pose, the vertices and their shares.
+    pub(super) fn anchors(&self) -> &[([usize; 3], [f64; 3])] {
+        &self.anchors
+    }
+
     /// The point that has these vertices and shares in each pose.
     pub(super) fn from_anchors(anchors: Vec<([usize; 3], [f64; 3])>) -> Self {
         Self { anchors }

@@ -65,7 +65,8 @@ impl Format {
     fn suffix(self) -> Option<&'static str> {
         match self {
             Self::Lottie => Some("json"),
-            Self::Png | Self::SvgSequence | Self::Spine | Self::Sprites | Self::Runtime => None,
+            Self::Runtime => Some("inb"),
+            Self::Png | Self::SvgSequence | Self::Spine | Self::Sprites => None,
             named => Some(named.name()),
         }
     }
@@ -128,6 +129,7 @@ mod tests {
         assert_eq!(of("A.GIF", None), Ok(Format::Gif));
         assert_eq!(of("a.json", None), Ok(Format::Lottie));
         assert_eq!(of("a.json", Some("spine")), Ok(Format::Spine));
+        assert_eq!(of("a.inb", None), Ok(Format::Runtime));
         assert_eq!(of("a.png", Some("sprites")), Ok(Format::Sprites));
         assert!(of("a.png", None).is_err_and(|message| message.contains("inbetween frame")));
         assert!(of("a.tiff", None).is_err_and(|message| message.contains(".webp")));

@@ -1,6 +1,7 @@
-//! Textured meshes that are deformed: glTF, Spine.
+//! Textured meshes that are deformed: glTF, Spine, the crate's own file for playing.
 
-use inbetween::export::{PendingFile, PuppetMotion, PuppetReport, gltf_bytes, write_spine};
+use inbetween::export::runtime::{Precision, runtime_bytes};
+use inbetween::export::{PendingFile, PuppetMotion, PuppetReport, gltf_bytes, texture_png, write_spine};
 use inbetween::pipeline::Character;
 use inbetween::render::puppet::{Puppet, PuppetFrame};
 use rayon::prelude::*;
@@ -9,12 +10,10 @@ use super::job::Job;
 
 /// Writes one `.glb` file.
 pub(super) fn glb(job: Job<'_>) -> anyhow::Result<()> {
-    use std::io::Write as _;
-    let mut file = PendingFile::create(job.output)?;
+    let file = PendingFile::create(job.output)?;
     let take = Take::new(&job)?;
     let (bytes, report) = gltf_bytes(&take.motion(&job)).map_err(anyhow::Error::msg)?;
-    file.write_all(&bytes)?;
-    file.commit()?;
+    file.fill(&bytes)?;
     take.done(&job, &report)
 }
 
@@ -23,6 +22,26 @@ pub(super) fn spine(job: Job<'_>) -> anyhow::Result<()> {
     let take = Take::new(&job)?;
     let (_, report) = write_spine(job.output, &take.motion(&job))?;
     take.done(&job, &report)
+}
+
+/// Writes one file with all that a player needs. It holds the whole animation, whichever frames are asked for.
+pub(super) fn runtime(job: Job<'_>) -> anyhow::Result<()> {
+    let file = PendingFile::create(job.output)?;
+    let character = job.character()?;
+    let whole = character.runtime_file(job.scene, texture_png)?;
+    let written = runtime_bytes(&whole, Precision::Quantised).or_else(|_| runtime_bytes(&whole, Precision::Single));
+    let (bytes, read) = written?;
+    file.fill(&bytes)?;
+    let layers = whole.layers.iter().zip(&read.layers);
+    let pairs = layers.flat_map(|(a, b)| a.mesh.positions().iter().zip(b.mesh.positions()));
+    let worst = pairs
+        .flat_map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b).norm()))
+        .fold(0.0, f64::max);
+    job.verbosity.note(&format!(
+        "{} bytes; vertices of the poses are at most {worst:.4} pixels from where they belong",
+        bytes.len()
+    ));
+    job.done(&character, &job.progress())
 }
 
 /// The frames that are wanted, as meshes.

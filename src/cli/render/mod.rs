@@ -27,9 +27,9 @@ use super::{Failure, Verbosity};
 /// Render the animation of a scene
 ///
 /// The kind of output is taken from OUT's name: a folder gets numbered PNG files NAME.0001.png, a name ending in .gif,
-/// .apng, .webp, .mp4 or .webm that one file (the last two need the program ffmpeg). Any subset of frames has the same
-/// bytes as in a whole run, for any number of threads. Files appear when they are complete; a run that is killed or
-/// fails leaves none that is torn.
+/// .apng, .webp, .svg, .json (Lottie), .glb (glTF), .inb (for players), .mp4 or .webm that one file (the last two need
+/// the program ffmpeg). Any subset of frames has the same bytes as in a whole run, for any number of threads. Files appear
+/// when they are complete; a run that is killed or fails leaves none that is torn.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -40,11 +40,12 @@ Examples:
 pub(crate) struct Arguments {
     /// The scene file
     scene: PathBuf,
-    /// A folder, or a file ending in .gif, .apng, .webp, .svg, .json (Lottie), .glb, .mp4 or .webm
+    /// A folder, or a file whose ending says what it is
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// The kind of output, where the name does not say: png (a folder), svg-sequence (a folder), sprites (a .png with a .json
-    /// beside it), gif, apng, webp, svg, lottie, glb, spine, mp4 or webm
+    /// The kind of output, where the name does not say: png (a folder), sprites (a .png with a .json beside it), gif,
+    /// apng, webp, mp4, webm, svg, svg-sequence (a folder), lottie, glb, spine (a folder, or a .json with its pictures
+    /// beside it) or runtime
     #[arg(long, value_name = "FORMAT")]
     format: Option<String>,
     /// Only these frames, counted from 1, such as 1-10,20
@@ -79,34 +80,27 @@ pub(crate) struct Arguments {
 /// Writes one kind of output.
 type Writer = fn(Job<'_>) -> anyhow::Result<()>;
 
-/// What writes a kind of output; `None` for those to come.
-fn writer(format: Format) -> Option<Writer> {
+/// What writes a kind of output.
+fn writer(format: Format) -> Writer {
     match format {
-        Format::Png => Some(sequence::run),
-        Format::Gif => Some(gif::run),
-        Format::Apng => Some(apng::run),
-        Format::WebP => Some(webp::run),
-        Format::Sprites => Some(sprites::run),
-        Format::Mp4 => Some(video::mp4),
-        Format::WebM => Some(video::webm),
-        Format::Glb => Some(mesh::glb),
-        Format::Spine => Some(mesh::spine),
-        Format::Svg => Some(vector::svg),
-        Format::SvgSequence => Some(sequence::curves),
-        Format::Lottie => Some(vector::lottie),
-        Format::Runtime => None,
+        Format::Png => sequence::run,
+        Format::Gif => gif::run,
+        Format::Apng => apng::run,
+        Format::WebP => webp::run,
+        Format::Sprites => sprites::run,
+        Format::Mp4 => video::mp4,
+        Format::WebM => video::webm,
+        Format::Glb => mesh::glb,
+        Format::Spine => mesh::spine,
+        Format::Svg => vector::svg,
+        Format::SvgSequence => sequence::curves,
+        Format::Lottie => vector::lottie,
+        Format::Runtime => mesh::runtime,
     }
 }
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
     let format = Format::of(&arguments.output, arguments.format.as_deref()).map_err(Failure::Usage)?;
-    let Some(write) = writer(format) else {
-        return Err(Failure::Usage(format!(
-            "{}: {} is not supported yet; choose a folder (PNG files), .gif, .apng, .webp, .mp4, .webm or --format sprites",
-            arguments.output.display(),
-            format.name()
-        )));
-    };
     if arguments.resume && !format.is_sequence() {
         return Err(Failure::Usage(
             "--resume works with a folder of files only; a single file is written whole, so render it again".to_owned(),
@@ -144,6 +138,6 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         max_error: arguments.max_error,
         verbosity,
     };
-    pool.install(|| write(job))?;
+    pool.install(|| writer(format)(job))?;
     Ok(())
 }

@@ -1,7 +1,5 @@
 //! Curves that move: animated SVG, Lottie.
 
-use std::io::Write as _;
-
 use anyhow::bail;
 use inbetween::export::{KeyOptions, KeyReport, KeyedVector, PendingFile, Repetition, SampleTiming};
 use inbetween::pipeline::{Character, PipelineError};
@@ -18,21 +16,19 @@ const SAMPLES_A_THREAD: usize = 4;
 
 /// Writes one animated `.svg` file.
 pub(super) fn svg(job: Job<'_>) -> anyhow::Result<()> {
-    let mut file = PendingFile::create(job.output)?;
+    let file = PendingFile::create(job.output)?;
     let take = Take::new(&job)?;
     let (text, report) = take.keyed.to_smil(&take.options)?;
-    file.write_all(text.as_bytes())?;
-    file.commit()?;
+    file.fill(text.as_bytes())?;
     take.done(&job, &report)
 }
 
 /// Writes one Lottie `.json` file.
 pub(super) fn lottie(job: Job<'_>) -> anyhow::Result<()> {
-    let mut file = PendingFile::create(job.output)?;
+    let file = PendingFile::create(job.output)?;
     let take = Take::new(&job)?;
     let (text, report) = take.keyed.to_lottie(&job.scene.short_name(), &take.options)?;
-    file.write_all(text.as_bytes())?;
-    file.commit()?;
+    file.fill(text.as_bytes())?;
     take.done(&job, &report)
 }
 

@@ -324,7 +324,7 @@ impl<'a> Reader<'a> {
                 .map(f64::from)
                 .collect()
         };
-        if numbers.iter().any(|number| !(number.abs() <= LARGEST_COORDINATE)) {
+        if !numbers.iter().all(|number| number.abs() <= LARGEST_COORDINATE) {
             return self.damaged("a position is out of reach");
         }
         let embedding = |numbers: &[f64]| numbers.chunks_exact(2).map(|p| Point::new(p[0], p[1])).collect();

@@ -136,7 +136,9 @@ impl Writer {
         self.count(options.regions.len())?;
         for region in &options.regions {
             self.index(region.vertex, vertices)?;
-            [region.radius, region.stiffness, region.stretch_limit].map(|number| self.double(number));
+            for number in [region.radius, region.stiffness, region.stretch_limit] {
+                self.double(number);
+            }
         }
         Ok(())
     }
@@ -153,7 +155,9 @@ impl Writer {
             Precision::Quantised => {
                 let (low, high) = point::bounding_box(all()).unwrap_or_default();
                 let (low, step) = steps(low, high);
-                [low.x, low.y, step].map(|number| self.double(number));
+                for number in [low.x, low.y, step] {
+                    self.double(number);
+                }
                 for p in all() {
                     let counted = (p - low) / step;
                     self.bytes.extend((counted.x.round() as u16).to_le_bytes());

@@ -1,0 +1,139 @@
+//! A character as the crate's own file for playing.
+
+use super::{Character, PipelineError};
+use crate::export::runtime::{
+    RuntimeAnimation, RuntimeFile, RuntimeLayer, RuntimePose, RuntimeTexture, RuntimeTie, WeightField,
+};
+use crate::math::{Point, point};
+use crate::pipeline::LayerShape;
+use crate::pose::PoseSet;
+use crate::render::puppet::{PuppetLayer, PuppetTexture};
+use crate::scene::{Animation, Scene};
+
+/// Samples of the weights along a side of the plane.
+const GRID: usize = 65;
+/// How far the samples reach beyond the poses, as a fraction of their extent.
+const MARGIN: f64 = 0.25;
+
+impl Character {
+    /// Everything that a player needs. `scene` is the one that the character was made of, [laid
+    /// out](crate::pipeline::laid_out); its animation is the one that is played. `encode` makes a PNG file of a texture.
+    ///
+    /// # Errors
+    /// [`PipelineError`] if the animation leaves the pose space, or what `encode` says.
+    pub fn runtime_file(
+        &self,
+        scene: &Scene,
+        encode: impl Fn(&PuppetTexture) -> Result<Vec<u8>, String>,
+    ) -> Result<RuntimeFile, PipelineError> {
+        let puppet = self.puppet();
+        let places: Vec<&[f64]> = scene.poses.iter().map(|pose| pose.at.as_slice()).collect();
+        let poses = scene
+            .poses
+            .iter()
+            .zip(self.figure.draw_orders())
+            .map(|(pose, order)| RuntimePose {
+                name: pose.name.clone(),
+                at: pose.at.clone(),
+                order: order.clone(),
+            });
+        let layers = self.figure.layers.iter().zip(&puppet.layers);
+        Ok(RuntimeFile {
+            size: puppet.size.map(|side| side as u32),
+            texture_sharpness: scene.texture_sharpness,
+            poses: poses.collect(),
+            field: self.field(&places)?,
+            animation: self.played(&scene.animation)?,
+            layers: layers
+                .map(|(shape, layer)| {
+                    runtime_layer(shape, layer, &encode).map_err(|problem| {
+                        PipelineError::stage(&[], None, format!("layer '{}': {problem}", layer.name))
+                    })
+                })
+                .collect::<Result<_, _>>()?,
+        })
+    }
+
+    fn weights_at(&self, place: &[f64]) -> Result<Vec<f32>, PipelineError> {
+        let mut weights = Vec::new();
+        self.weights
+            .weights(place, &mut weights)
+            .map_err(PipelineError::Weights)?;
+        Ok(weights.into_iter().map(|weight| weight as f32).collect())
+    }
+
+    fn played(&self, animation: &Animation) -> Result<RuntimeAnimation, PipelineError> {
+        let weights = (0..animation.frame_count())
+            .map(|index| self.weights_at(&animation.at(animation.time_of_frame(index))))
+            .collect::<Result<_, _>>()?;
+        Ok(RuntimeAnimation {
+            fps: animation.fps,
+            is_loop: animation.is_loop(),
+            weights,
+        })
+    }
+
+    fn field(&self, places: &[&[f64]]) -> Result<Option<WeightField>, PipelineError> {
+        let points: Option<Vec<Point>> = places
+            .iter()
+            .map(|place| match place {
+                [x, y] => Some(Point::new(*x, *y)),
+                _ => None,
+            })
+            .collect();
+        let Some((low, high)) = points.as_ref().and_then(point::bounding_box) else {
+            return Ok(None);
+        };
+        let extent = (high - low).max();
+        let margin = Point::repeat(MARGIN * if extent > 0.0 { extent } else { 1.0 });
+        let (low, high) = (low - margin, high + margin);
+        let step = (high - low) / (GRID - 1) as f64;
+        let mut weights = Vec::new();
+        for row in 0..GRID {
+            for column in 0..GRID {
+                weights.extend(self.weights_at(&[low.x + step.x * column as f64, low.y + step.y * row as f64])?);
+            }
+        }
+        Ok(Some(WeightField {
+            low: low.into(),
+            high: high.into(),
+            columns: GRID,
+            rows: GRID,
+            weights,
+        }))
+    }
+}
+
+fn runtime_layer(
+    shape: &LayerShape,
+    layer: &PuppetLayer,
+    encode: impl Fn(&PuppetTexture) -> Result<Vec<u8>, String>,
+) -> Result<RuntimeLayer, String> {
+    let poses = layer
+        .poses
+        .iter()
+        .map(|pose| (pose.name.clone(), pose.positions.clone()));
+    let mesh = PoseSet::new(shape.mapping().poses.topology().clone(), poses.collect());
+    let texture = |texture: &PuppetTexture| {
+        let size = Point::new(texture.width as f64, texture.height as f64);
+        Ok(RuntimeTexture {
+            name: texture.name.clone(),
+            png: encode(texture)?,
+            places: texture.places.iter().map(|p| p.component_div(&size)).collect(),
+        })
+    };
+    Ok(RuntimeLayer {
+        name: layer.name.clone(),
+        poses: shape.poses().to_vec(),
+        texture_of: layer.poses.iter().map(|pose| pose.texture).collect(),
+        mesh: mesh.map_err(|error| error.to_string())?,
+        rings: layer.rings.clone(),
+        options: shape.options().clone(),
+        tie: shape.tie_points().map(|(to, own, other)| RuntimeTie {
+            to,
+            own: own.anchors().to_vec(),
+            other: other.anchors().to_vec(),
+        }),
+        textures: layer.textures.iter().map(texture).collect::<Result<_, String>>()?,
+    })
+}
