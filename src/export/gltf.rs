@@ -20,7 +20,7 @@ use serde_json::{Value, json};
 
 use super::puppet_motion::{LayerMotion, PuppetMotion, PuppetReport, changes, texture_png};
 use crate::math::Point;
-use crate::render::puppet::{PuppetLayer, PuppetTexture};
+use crate::render::{PuppetLayer, PuppetTexture};
 
 /// Pixels of the frame that are one unit.
 pub const PIXELS_A_UNIT: f64 = 100.0;

@@ -3,7 +3,7 @@
 use super::keys::{Keys, place_keys};
 use crate::math::Point;
 use crate::math::point::is_finite;
-use crate::render::puppet::{Puppet, PuppetFrame, PuppetLayer, PuppetTexture};
+use crate::render::{Puppet, PuppetFrame, PuppetLayer, PuppetTexture};
 
 /// A layer less opaque than this is not seen.
 const UNSEEN: f64 = 1.0 / 510.0;
@@ -210,7 +210,7 @@ pub(super) fn changes<T: PartialEq>(values: &[T]) -> Vec<usize> {
 #[cfg(test)]
 pub(super) mod testing {
     use super::*;
-    use crate::render::puppet::{PuppetLayerFrame, PuppetPose};
+    use crate::render::{PuppetLayerFrame, PuppetPose};
 
     /// A puppet of two squares in a frame of 200 x 100. The first turns once in two seconds while its first texture gives way to
     /// the second; the second one stands still, comes before the first at half time, and vanishes at the end.

@@ -43,7 +43,7 @@
 //!   are good to 6e-8 of a coordinate. Positions are pixels of the frame.
 //! - **Weights** are those of the scene's provider, sampled: over the plane bilinear in between (an approximation; not quite 1 at a pose's
 //!   own place), over the animation exact at frames. Beyond the grid the border holds.
-//! - **Drawing** a frame: as [`Puppet`](crate::render::puppet::Puppet)s are drawn. There is no outline in the file: the textures' alpha is
+//! - **Drawing** a frame: as [`Puppet`](crate::render::Puppet)s are drawn. There is no outline in the file: the textures' alpha is
 //!   the edge.
 //! - A layer's weights are those of the poses it has, [restricted](crate::math::restricted_weights) and summing to 1 again.
 //!

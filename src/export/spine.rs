@@ -22,7 +22,7 @@ use super::keys::place_keys;
 use super::puppet_motion::{LayerMotion, PuppetMotion, PuppetReport, changes, texture_png};
 use super::{ExportError, PendingFile};
 use crate::math::Point;
-use crate::render::puppet::PuppetLayer;
+use crate::render::PuppetLayer;
 
 /// Decimals of coordinates and times: a vertex is off by at most a few of these units.
 const DECIMALS: i32 = 4;

@@ -27,5 +27,6 @@ pub use camera::Camera;
 pub use colour_blend::ColourBlend;
 pub use frame::Frame;
 pub use painter::{PaintOptions, Painter, PoseTexture};
+pub use puppet::{Puppet, PuppetFrame, PuppetLayer, PuppetLayerFrame, PuppetPose, PuppetTexture};
 pub use silhouette::Silhouette;
 pub use texture::Texture;
