@@ -8,7 +8,7 @@
 //! - `shear-limiting.png`: poses beyond the drawings, with each [`Stretch`](inbetween::blend::Stretch).
 //! - `morphing-against-deformation.png`: one drawing bent towards another by handles, and the morph between the two.
 
-mod common;
+pub(crate) mod common;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ const CELL_WIDTH: u32 = 184;
 /// How many steps from one pose to another are shown.
 const STEPS: usize = 5;
 
-fn main() -> Result<(), Box<dyn Error>> {
+pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("usage: blending FOLDER")?);
     std::fs::create_dir_all(&folder)?;
     let [walker, snake, face] = [Cast::read("walker")?, Cast::read("snake")?, Cast::read("face")?];

@@ -3,7 +3,7 @@
 //! `cargo run --release --example stages -- FOLDER` writes `1-input.png` to `8-frames.png` there. Here the stages are called
 //! one by one; `pipeline::Character` does the same, for every scene, in one call.
 
-mod common;
+pub(crate) mod common;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ const CELL: [u32; 2] = [192, 216];
 /// How many steps from one pose to another are shown.
 const STEPS: usize = 5;
 
-fn main() -> Result<(), Box<dyn Error>> {
+pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("usage: stages FOLDER")?);
     std::fs::create_dir_all(&folder)?;
     let scene = Scene::open(Path::new(concat!(

@@ -11,7 +11,7 @@ import { basename, join, resolve } from 'node:path';
 import { tmpdir } from 'node:os';
 import { pathToFileURL } from 'node:url';
 
-const players = process.env.PLAYERS ?? '/opt/players';
+const players = process.env.PLAYERS ?? ".";
 const require = createRequire(join(players, 'node_modules', 'none.js'));
 const { chromium } = require('playwright-core');
 

@@ -31,7 +31,7 @@ def run(*command):
 
 
 def schema_faults(text):
-    players = pathlib.Path(os.environ.get("PLAYERS", "/opt/players"))
+    players = pathlib.Path(os.environ.get("PLAYERS", "."))
     package = players / "node_modules/@lottie-animation-community/lottie-specs"
     path = package / "src/data/lottie.schema.json"
     if not path.is_file():

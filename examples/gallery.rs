@@ -1,0 +1,153 @@
+//! Every picture of the README: `cargo run --release --example gallery -- data/pictures` draws them again.
+//!
+//! The stages of the pipeline and the comparisons of blends come from the examples of those names; the animations, the
+//! explained scene and the drawing carried as curves are drawn here.
+
+#![expect(clippy::duplicate_mod, reason = "both examples have the sheet that they draw on")]
+
+#[path = "blending.rs"]
+mod blending;
+#[path = "stages.rs"]
+mod stages;
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use inbetween::export::{Backdrop, ColourCount, GifWriter, Palette, PendingFile, Repetition, png_bytes};
+use inbetween::pipeline::{Character, map_drawings, read_drawings, weight_provider};
+use inbetween::render::Frame;
+use inbetween::render::diagram::{self, Diagram, DiagramPose, Sections};
+use inbetween::scene::{ArtChoice, Background, Scene};
+use stages::common::Sheet;
+
+type Drawn = Result<(), Box<dyn Error>>;
+
+/// The animations: which scene, how large, frames a second.
+const ANIMATIONS: [(&str, [usize; 2], f64); 3] = [
+    ("walker", [270, 304], 12.0),
+    ("clown", [270, 290], 15.0),
+    ("bear", [270, 304], 12.0),
+];
+/// What is shown of the picture that explains the walker: its upper left part, columns and rows.
+const EXPLAINED: [usize; 2] = [1890, 960];
+/// Columns and rows of one face.
+const FACE: [usize; 2] = [300, 300];
+/// How much of the right one of two faces is seen in each step.
+const STEPS: [f64; 3] = [0.25, 0.5, 0.75];
+
+fn main() -> Drawn {
+    let folder = PathBuf::from(std::env::args().nth(1).ok_or("usage: gallery FOLDER")?);
+    stages::main()?;
+    blending::main()?;
+    for (name, size, fps) in ANIMATIONS {
+        animation(name, size, fps, &folder)?;
+    }
+    explained(&folder)?;
+    curves(&folder)
+}
+
+fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("data")
+        .join(name)
+        .join("scene.toml");
+    Ok(Scene::open(&file)?)
+}
+
+/// A scene as a GIF that plays for ever.
+fn animation(name: &str, size: [usize; 2], fps: f64, folder: &Path) -> Drawn {
+    let mut scene = scene(name)?;
+    scene.animation.background = Background::Colour([255; 4]);
+    scene.animation.fps = fps;
+    let character = Character::new(&scene, size)?;
+    let frames: Vec<Frame> = (0..scene.animation.frame_count())
+        .map(|index| character.frame(&scene.animation, index))
+        .collect::<Result<_, _>>()?;
+    let mut colours = ColourCount::default();
+    for frame in &frames {
+        colours.add(frame);
+    }
+    let file = PendingFile::create(&folder.join(format!("{name}.gif")))?;
+    let palette = Palette::new(&colours);
+    let mut writer = GifWriter::new(file, size, fps, palette, Backdrop::Opaque, Repetition::Forever)?;
+    for frame in &frames {
+        writer.add(frame)?;
+    }
+    Ok(writer.finish()?)
+}
+
+/// What `inbetween show` draws of the walker.
+fn explained(folder: &Path) -> Drawn {
+    let scene = scene("walker")?;
+    let provider = weight_provider(&scene, None)?;
+    let drawings = read_drawings(&scene)?;
+    let (mapping, report) = map_drawings(&scene, &drawings)?;
+    let poses: Vec<DiagramPose> = scene
+        .poses
+        .iter()
+        .map(|pose| DiagramPose {
+            name: pose.name.clone(),
+            at: pose.at.clone(),
+        })
+        .collect();
+    let weights = |place: &[f64]| {
+        let mut weights = Vec::new();
+        provider.weights(place, &mut weights).ok().map(|()| weights)
+    };
+    let diagram = Diagram {
+        mapping: &mapping,
+        matching: &report.matching,
+        landmarks: &report.landmarks,
+        poses: &poses,
+        path: &[],
+    };
+    let sections = Sections::new(&mapping, &report.matching, &report.landmarks);
+    let whole = diagram::draw(&diagram, &sections, weights)?;
+    let [width, height] = [EXPLAINED[0].min(whole.width), EXPLAINED[1].min(whole.height)];
+    let rows = whole.pixels.chunks_exact(whole.width).take(height);
+    let frame = Frame {
+        width,
+        height,
+        pixels: rows.flat_map(|row| row[..width].iter().copied()).collect(),
+    };
+    few_colours(&folder.join("show.png"), &frame)
+}
+
+/// A large picture of lines and flat colours, in 256 of them: a quarter of the bytes.
+fn few_colours(path: &Path, frame: &Frame) -> Drawn {
+    let palette = Palette::for_frames(std::slice::from_ref(frame));
+    let mut file = PendingFile::create(path)?;
+    let mut encoder = png::Encoder::new(&mut file, frame.width as u32, frame.height as u32);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
+    encoder.set_palette(palette.bytes());
+    encoder.write_header()?.write_image_data(&palette.indices(frame))?;
+    Ok(file.commit()?)
+}
+
+/// From one face to another: above cross-faded as pixels, below as curves.
+fn curves(folder: &Path) -> Drawn {
+    let mut sheet = Sheet::new([(STEPS.len() * FACE[0]) as u32, 2 * FACE[1] as u32])?;
+    for (row, art) in [ArtChoice::Pixels, ArtChoice::Curves].into_iter().enumerate() {
+        let mut scene = scene("face")?;
+        scene.art = art;
+        let character = Character::new(&scene, FACE)?;
+        let pose = |name: &str| {
+            let found = scene.poses.iter().position(|pose| pose.name == name);
+            found.ok_or_else(|| format!("no pose '{name}'"))
+        };
+        let (from, to) = (pose("calm_left")?, pose("laugh_right")?);
+        for (column, step) in STEPS.into_iter().enumerate() {
+            let mut weights = vec![0.0; scene.poses.len()];
+            weights[from] += 1.0 - step;
+            weights[to] += step;
+            let corner = [(column * FACE[0]) as u32, (row * FACE[1]) as u32];
+            sheet.paste(corner, &character.frame_of(&weights)?)?;
+        }
+    }
+    Ok(std::fs::write(
+        folder.join("pixels-and-curves.png"),
+        png_bytes(&sheet.into_frame())?,
+    )?)
+}
