@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::pending::remove_abandoned;
 use super::{ExportError, Label, PendingFile, png_bytes_with, svg_text_with};
 use crate::render::Frame;
-use crate::render::drawing::VectorFrame;
+use crate::render::VectorFrame;
 
 /// What the files of a sequence are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -9,7 +9,7 @@ use super::figure::{self, Figure, Posed};
 use super::layer::{self, LayerShape, Part};
 use super::layout::placed;
 use super::{PipelineError, weight_provider, weighting};
-use crate::render::drawing::{VectorFrame, VectorGroup, VectorNode, rasterise};
+use crate::render::drawing::{VectorFrame, VectorGroup, VectorNode};
 use crate::render::puppet::{Puppet, PuppetFrame};
 use crate::render::{Camera, Frame, PaintOptions, Painter};
 use crate::scene::{Animation, Background, Layout, Scene};
@@ -131,7 +131,7 @@ impl Character {
     pub fn paint(&self, posed: &Posed) -> Frame {
         let painters: Option<Vec<&Painter>> = self.art.iter().map(LayerArt::painter).collect();
         let Some(painters) = painters else {
-            return rasterise(&self.draw(posed), self.samples);
+            return self.draw(posed).rasterise(self.samples);
         };
         let mut frame: Option<Frame> = None;
         for &k in &posed.order {

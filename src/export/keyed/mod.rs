@@ -20,7 +20,7 @@ pub(super) use tree::{
 };
 
 use super::Repetition;
-use crate::render::drawing::VectorFrame;
+use crate::render::VectorFrame;
 use tree::Pictures;
 
 /// When the samples of an animation are taken.

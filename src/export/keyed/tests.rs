@@ -1,7 +1,7 @@
 use super::*;
 use crate::math::Point;
 use crate::render::Frame;
-use crate::render::drawing::{
+use crate::render::{
     Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke, Subpath,
     VectorGroup, VectorNode, VectorPicture, VectorShape,
 };

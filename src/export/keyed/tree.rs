@@ -7,7 +7,7 @@ use super::KeyedError;
 use crate::export::{box_of, png_bytes};
 use crate::math::Point;
 use crate::render::Frame;
-use crate::render::drawing::{
+use crate::render::{
     Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stroke, VectorGroup,
     VectorNode, VectorPicture, VectorShape,
 };

@@ -8,7 +8,7 @@ use crate::export::keyed::{GradientTrack, PaintTrack, StrokeTrack, settled};
 use crate::export::svg::linear_ends;
 use crate::math::Point;
 use crate::math::point::cross;
-use crate::render::drawing::{FillRule, LineCap, LineJoin, Placement, Spread};
+use crate::render::{FillRule, LineCap, LineJoin, Placement, Spread};
 
 /// Decimals of colours, offsets and opacities from 0 to 1.
 const SHARE_DECIMALS: i32 = 4;

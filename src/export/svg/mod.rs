@@ -27,7 +27,7 @@ use super::keyed::{
 };
 use super::smil::Clock;
 use super::{Label, Repetition};
-use crate::render::drawing::{FillRule, VectorFrame};
+use crate::render::{FillRule, VectorFrame};
 
 /// Decimals of lengths in a still frame.
 const STILL_DECIMALS: usize = 3;

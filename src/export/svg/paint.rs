@@ -5,7 +5,7 @@ use super::{Element, SHARE_DECIMALS, SvgWriter, number};
 use crate::export::keyed::{GradientTrack, PaintTrack, StrokeTrack, settled};
 use crate::math::Point;
 use crate::math::point::{cross, perpendicular};
-use crate::render::drawing::{LineCap, LineJoin, Placement, Spread};
+use crate::render::{LineCap, LineJoin, Placement, Spread};
 
 /// Maps smaller than this fraction of a pixel have no direction.
 const NO_LENGTH: f64 = 1e-9;

@@ -2,7 +2,6 @@ use super::*;
 use crate::export::Repetition;
 use crate::export::keyed::tests::{animation, bar, everything, frame_of, shape, timing};
 use crate::math::Point;
-use crate::render::drawing::rasterise;
 use proptest::prelude::*;
 
 /// What resvg makes of a document, colours multiplied by alpha.
@@ -22,7 +21,7 @@ fn a_frame_is_drawn_as_our_own_rasteriser_draws_it() {
         // The reference is built without bitmaps.
         frame.nodes.remove(0);
         let theirs = drawn(&svg_text(&frame).expect("a frame"));
-        let ours = rasterise(&frame, 1);
+        let ours = frame.rasterise(1);
         let differences = ours
             .pixels
             .iter()
@@ -142,7 +141,7 @@ proptest! {
     ) {
         let [a, b, c, d, e, f] = values;
         prop_assume!((a * d - b * c).abs() > 0.5);
-        let placement = crate::render::drawing::Placement {
+        let placement = crate::render::Placement {
             along_x: Point::new(a, b),
             along_y: Point::new(c, d),
             origin: Point::new(e, f),

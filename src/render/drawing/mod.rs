@@ -4,7 +4,7 @@
 //! the same nodes with the same ids and equally many curves, whatever is seen of them: only numbers change, and the order of
 //! siblings where poses draw in different orders. So a format with keys can follow a node through the frames by its id.
 //!
-//! [`CarriedDrawing`] makes frames from the [`Art`](crate::input::Art) of a character's drawings; [`rasterise`] makes pixels of them.
+//! [`CarriedDrawing`] makes frames from the [`Art`](crate::input::Art) of a character's drawings; [`VectorFrame::rasterise`] makes pixels of them.
 //! The order of drawing is that of the files; where they contradict one another, the drawing with the largest texture weight decides
 //! (of equal ones the first), and the others say where elements go that it does not have.
 
@@ -21,12 +21,8 @@ mod style;
 
 pub use carried::{CarriedDrawing, PoseArt};
 pub use frame::{VectorFrame, VectorGroup, VectorNode, VectorPicture, VectorShape};
-pub use raster::rasterise;
 
 // The style of paths is the same in drawings and frames; only the unit differs.
 pub use crate::input::{
     Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke, Subpath,
 };
-
-#[cfg(test)]
-mod tests;

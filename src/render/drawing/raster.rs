@@ -37,12 +37,18 @@ const FAINTEST: f64 = 1.0 / 512.0;
 /// Dashes of a line beyond which it is drawn whole: they could not be told apart.
 const MOST_DASHES: f64 = 100_000.0;
 
-/// The pixels of a frame. `samples` along a pixel's side are drawn and averaged, at least 1: paths are anti-aliased already,
-/// more shows thin lines and edges that meet more evenly.
-///
-/// A picture smaller than the frame covers its upper left part.
-#[must_use]
-pub fn rasterise(frame: &VectorFrame, samples: usize) -> Frame {
+impl VectorFrame {
+    /// The pixels of the frame. `samples` along a pixel's side are drawn and averaged, at least 1: paths are anti-aliased
+    /// already, more shows thin lines and edges that meet more evenly.
+    ///
+    /// A picture smaller than the frame covers its upper left part.
+    #[must_use]
+    pub fn rasterise(&self, samples: usize) -> Frame {
+        rasterised(self, samples)
+    }
+}
+
+fn rasterised(frame: &VectorFrame, samples: usize) -> Frame {
     let samples = samples.clamp(1, TILE / 8);
     let [columns, rows] = frame.size;
     let mut drawn = Frame::filled(columns, rows, [0; 4]);

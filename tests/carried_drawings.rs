@@ -2,14 +2,14 @@
 
 use proptest::prelude::*;
 
-use super::super::{Camera, Silhouette};
-use super::*;
-use crate::input::{Art, ArtElement, Drawing, SvgOptions, read_svg};
-use crate::matching::Correspondence;
-use crate::math::{Point, point, rotation};
-use crate::mesh::Topology;
-use crate::outline::{Outline, Ring};
-use crate::pose::{Mapping, Matching, PoseSet};
+use inbetween::input::{Art, ArtElement, Drawing, SvgOptions, read_svg};
+use inbetween::matching::Correspondence;
+use inbetween::math::{Point, point, rotation};
+use inbetween::mesh::Topology;
+use inbetween::outline::{Outline, Ring};
+use inbetween::pose::{Mapping, Matching, PoseSet};
+use inbetween::render::drawing::*;
+use inbetween::render::{Camera, Silhouette};
 
 /// The square from (0, 0) to (100, 100), its diagonal an edge of the mesh, in poses given by maps of its corners.
 fn mapping(poses: &[[[f64; 2]; 4]]) -> Mapping {
@@ -162,7 +162,7 @@ fn drawings_without_a_common_name_fade_as_a_whole_within_one_edge() {
         background: None,
         nodes,
     };
-    let pixels = rasterise(&frame, 1);
+    let pixels = frame.rasterise(1);
     let middle = pixels.pixels[100 * 200 + 100];
     assert!(middle[0].abs_diff(64) <= 1 && middle[3] == 255, "{middle:?}");
     assert_eq!(pixels.pixels[100 * 200 + 5], [0; 4]);
@@ -377,7 +377,7 @@ fn looks_as_its_file(name: &str, bytes: &[u8]) {
         background: None,
         nodes: carried.frame(&mapping.poses.positions()[0], &[1.0], &[1.0]),
     };
-    let drawn = rasterise(&frame, 1);
+    let drawn = frame.rasterise(1);
     let differences: Vec<u8> = drawn
         .pixels
         .iter()
@@ -448,14 +448,14 @@ fn odd_shapes_do_not_stop_the_rasteriser() {
         background: None,
         nodes: shapes.collect(),
     };
-    let pixels = rasterise(&frame, 2).pixels;
+    let pixels = frame.rasterise(2).pixels;
     assert!(pixels.iter().all(|[r, g, b, a]| r <= a && g <= a && b <= a));
     // The dot is none.
     let only_dot = VectorFrame {
         nodes: vec![frame.nodes[2].clone()],
         ..frame.clone()
     };
-    assert!(rasterise(&only_dot, 1).pixels.iter().all(|pixel| *pixel == [0; 4]));
+    assert!(only_dot.rasterise(1).pixels.iter().all(|pixel| *pixel == [0; 4]));
 }
 
 #[test]
@@ -497,7 +497,7 @@ fn tiles_meet_without_a_seam_in_a_frame_wider_than_one() {
             }))],
         })],
     };
-    let drawn = rasterise(&frame, 2);
+    let drawn = frame.rasterise(2);
     assert!(drawn.pixels.iter().all(|pixel| *pixel == drawn.pixels[0]), "one colour");
     assert!(drawn.pixels[0][0].abs_diff(128) <= 1 && drawn.pixels[0][2] == 255);
 }
