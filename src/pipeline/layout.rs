@@ -36,7 +36,7 @@ fn no_common_layer() -> PipelineError {
 }
 
 /// The scene with a place for every pose. If the file gives none, its drawings are read and mapped for that, which takes as long
-/// as [`map_drawings`]; of a scene with layers, those of its first layer that all poses have.
+/// as [`map_drawings`](super::map_drawings); of a scene with layers, those of its first layer that all poses have.
 ///
 /// # Errors
 /// [`PipelineError`] if the drawings have to be mapped and cannot be.
