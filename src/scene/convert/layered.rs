@@ -1,7 +1,5 @@
 //! Layers: which poses have them, from which drawings, what they hang on, in which order they are drawn.
 
-use std::path::PathBuf;
-
 use toml::{Spanned, Value};
 
 use super::{Checked, Reader};
@@ -9,7 +7,6 @@ use crate::scene::error::SceneProblem;
 use crate::scene::file::{LayerTable, PoseTable, SceneFile};
 use crate::scene::layers::{LayerAnchor, SceneLayer};
 use crate::scene::settings::{DeformedCopy, DrawnSource, Extent, Facing, PoseSource, Scene};
-use crate::scene::source;
 
 impl Reader<'_> {
     /// The layers' names, in drawing order from back to front; none in a scene without.
@@ -184,18 +181,8 @@ impl Reader<'_> {
             (Some(path), _, _) => path,
             (None, _, _) => return Ok(None),
         };
-        if let Some(reason) = source::leaves_folder(&path) {
-            return Err(self.fail(
-                source.span().start,
-                SceneProblem::SourceOutside {
-                    pose: name.clone(),
-                    path,
-                    reason,
-                },
-            ));
-        }
         Ok(Some(PoseSource::Drawn(DrawnSource {
-            file: PathBuf::from(path),
+            file: self.inside_folder(path, name, source.span().start)?,
             line: self.line(source.span().start),
             extent: if element.is_some() {
                 Extent::Element

@@ -118,22 +118,12 @@ impl Reader<'_> {
             ));
         };
         let path = self.word(source, &format!("pose '{name}': source"))?;
-        if let Some(reason) = source::leaves_folder(&path) {
-            return Err(self.fail(
-                source.span().start,
-                SceneProblem::SourceOutside {
-                    pose: name.clone(),
-                    path,
-                    reason,
-                },
-            ));
-        }
         let element = match &written.element {
             Some(element) => Some(self.word(element, &format!("pose '{name}': element"))?),
             None => None,
         };
         Ok(DrawnSource {
-            file: PathBuf::from(path),
+            file: self.inside_folder(path, name, source.span().start)?,
             line: self.line(source.span().start),
             element,
             extent: Extent::Everything,
@@ -143,6 +133,21 @@ impl Reader<'_> {
                 Facing::AsDrawn
             },
         })
+    }
+
+    /// A source as a path that stays in the scene's folder.
+    pub(super) fn inside_folder(&self, path: String, pose: &str, at: usize) -> Checked<PathBuf> {
+        match source::leaves_folder(&path) {
+            None => Ok(PathBuf::from(path)),
+            Some(reason) => Err(self.fail(
+                at,
+                SceneProblem::SourceOutside {
+                    pose: pose.to_owned(),
+                    path,
+                    reason,
+                },
+            )),
+        }
     }
 
     /// A string, where with layers a table could stand.
