@@ -40,11 +40,15 @@ impl LayerArt {
         let drawn_on = part.scene.drawn_poses();
         let drawing_of = drawing_of_poses(part.scene);
         let (mapping, silhouette) = (shape.mapping(), shape.silhouette.clone());
+        let blending = match part.scene.colour_blend {
+            scene::ColourBlend::Plain => ColourBlend::Plain,
+            scene::ColourBlend::Linear => ColourBlend::Linear,
+        };
         let style = match curves(part.scene, &mut drawings, &drawn_on) {
             Some(curves) => {
                 let (carried, remarks) = CarriedDrawing::new(mapping, curves, drawing_of.clone(), silhouette, camera);
                 notes.extend(remarks.iter().map(|note| part.remark(note)));
-                Style::Curves(Box::new(carried))
+                Style::Curves(Box::new(carried.with_blending(blending)))
             }
             None => {
                 let scale = camera.scale() * samples as f64;
@@ -55,10 +59,7 @@ impl LayerArt {
                 };
                 let textures = drawings.iter().zip(&drawn_on).map(texture).collect();
                 let options = PaintOptions {
-                    blending: match part.scene.colour_blend {
-                        scene::ColourBlend::Plain => ColourBlend::Plain,
-                        scene::ColourBlend::Linear => ColourBlend::Linear,
-                    },
+                    blending,
                     supersample: samples,
                 };
                 let painter = Painter::new(mapping, textures, drawing_of.clone(), silhouette, camera, options);

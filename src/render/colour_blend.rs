@@ -22,6 +22,26 @@ pub enum ColourBlend {
     Linear,
 }
 
+impl ColourBlend {
+    /// What is averaged of a channel from 0 to 1.
+    pub(super) fn light_of(self, value: f64) -> f64 {
+        match self {
+            Self::Plain => value,
+            Self::Linear if value <= 0.040_45 => value / 12.92,
+            Self::Linear => libm::pow((value + 0.055) / 1.055, 2.4),
+        }
+    }
+
+    /// The channel of which [`Self::light_of`] is `light`.
+    pub(super) fn value_of(self, light: f64) -> f64 {
+        match self {
+            Self::Plain => light,
+            Self::Linear if light <= 0.003_130_8 => light * 12.92,
+            Self::Linear => 1.055 * libm::pow(light, 1.0 / 2.4) - 0.055,
+        }
+    }
+}
+
 /// From a texture's channels to what is averaged, and from averages to pixels. What is averaged lies in
 /// `0..=WHOLE_CHANNEL`; sums have 16 bits more.
 pub(super) trait Light: Copy + Sync {

@@ -24,7 +24,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::super::{Camera, Silhouette};
+use super::super::{Camera, ColourBlend, Silhouette};
 use super::binding::PoseMesh;
 use super::correspondence::corresponding;
 use super::order::{merged, most_seen};
@@ -57,6 +57,7 @@ pub struct CarriedDrawing {
     drawing_of: Vec<usize>,
     drawing_count: usize,
     camera: Camera,
+    blending: ColourBlend,
 }
 
 /// How nodes make a frame.
@@ -151,8 +152,17 @@ impl CarriedDrawing {
             drawing_of,
             drawing_count,
             camera,
+            blending: ColourBlend::Plain,
         };
         (this, notes)
+    }
+
+    /// The same with the colours of elements that morph averaged in this light; plain otherwise. What is cross-faded, and colours
+    /// between a gradient's stops, are the business of whoever draws the frame.
+    #[must_use]
+    pub fn with_blending(mut self, blending: ColourBlend) -> Self {
+        self.blending = blending;
+        self
     }
 
     /// The nodes of the frame whose mesh lies at `positions`, whose poses count with `weights` and whose drawings are seen with
@@ -170,7 +180,13 @@ impl CarriedDrawing {
         };
         let (shape, seen) = (by_drawing(weights), by_drawing(texture_weights));
         let draw = |k: usize, opacity: f64| {
-            VectorNode::Shape(Box::new(self.nodes[k].at(positions, &shape, opacity, &self.camera)))
+            VectorNode::Shape(Box::new(self.nodes[k].at(
+                positions,
+                &shape,
+                opacity,
+                &self.camera,
+                self.blending,
+            )))
         };
         match &self.composition {
             Composition::Merged(orders) => {
@@ -250,7 +266,14 @@ impl Node {
             .clamp(0.0, 1.0)
     }
 
-    fn at(&self, positions: &[Point], shape: &[f64], opacity: f64, camera: &Camera) -> VectorShape {
+    fn at(
+        &self,
+        positions: &[Point],
+        shape: &[f64],
+        opacity: f64,
+        camera: &Camera,
+        blending: ColourBlend,
+    ) -> VectorShape {
         let restricted = restricted_weights(shape, &self.is_in);
         let weights: Vec<f64> = self.drawings.iter().map(|&drawing| restricted[drawing]).collect();
         let subpaths: Vec<_> = self
@@ -259,7 +282,7 @@ impl Node {
             .map(|strand| strand.at(positions, &weights, |p| camera.to_pixels(p)))
             .collect();
         let carried: Vec<Placement> = self.fits.iter().map(|fit| fit.to(&subpaths)).collect();
-        let (fill, stroke, own) = self.styles.at(&weights, &carried, camera.scale());
+        let (fill, stroke, own) = self.styles.at(&weights, &carried, camera.scale(), blending);
         VectorShape {
             id: self.id.clone(),
             subpaths,

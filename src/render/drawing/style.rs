@@ -9,6 +9,7 @@
 //! What cannot change gradually has to agree: the fill rule, ends and corners of lines, the number of dashes, linear or radial, and
 //! what is beyond a gradient's ends.
 
+use super::super::ColourBlend;
 use crate::input::{
     ArtElement, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke,
 };
@@ -80,17 +81,26 @@ impl Styles {
 
     /// Fill, stroke and opacity where the drawings count with `weights`. `carried` maps places of drawing d to the frame; lengths
     /// grow by `scale`.
-    pub(super) fn at(&self, weights: &[f64], carried: &[Placement], scale: f64) -> (Option<Fill>, Option<Stroke>, f64) {
-        let shares = positive_shares(weights);
+    pub(super) fn at(
+        &self,
+        weights: &[f64],
+        carried: &[Placement],
+        scale: f64,
+        blending: ColourBlend,
+    ) -> (Option<Fill>, Option<Stroke>, f64) {
+        let shares = &Shares {
+            parts: positive_shares(weights),
+            blending,
+        };
         let fill = self.fill.as_ref().map(|(paints, rule)| Fill {
-            paint: paints.at(weights, &shares, carried),
+            paint: paints.at(weights, shares, carried),
             rule: *rule,
         });
         let stroke = self
             .stroke
             .as_ref()
-            .map(|lines| lines.at(weights, &shares, carried, scale));
-        (fill, stroke, mean(&shares, &self.opacities).clamp(0.0, 1.0))
+            .map(|lines| lines.at(weights, shares, carried, scale));
+        (fill, stroke, mean(&shares.parts, &self.opacities).clamp(0.0, 1.0))
     }
 }
 
@@ -143,9 +153,9 @@ impl Paints {
         })
     }
 
-    fn at(&self, weights: &[f64], shares: &[f64], carried: &[Placement]) -> Paint {
+    fn at(&self, weights: &[f64], shares: &Shares, carried: &[Placement]) -> Paint {
         match self {
-            Self::Solid(colours) => Paint::Solid(mean_colour(shares, colours.iter().copied())),
+            Self::Solid(colours) => Paint::Solid(shares.mean_colour(colours.iter().copied())),
             Self::Gradient {
                 spread,
                 kinds,
@@ -193,8 +203,12 @@ impl Paints {
                     spread: *spread,
                     stops: (0..count)
                         .map(|k| Stop {
-                            offset: stops.iter().zip(shares).map(|(of, share)| of[k].offset * share).sum(),
-                            colour: mean_colour(shares, stops.iter().map(|of| of[k].colour)),
+                            offset: stops
+                                .iter()
+                                .zip(&shares.parts)
+                                .map(|(of, share)| of[k].offset * share)
+                                .sum(),
+                            colour: shares.mean_colour(stops.iter().map(|of| of[k].colour)),
                         })
                         .collect(),
                 })
@@ -232,7 +246,7 @@ impl Lines {
         }))
     }
 
-    fn at(&self, weights: &[f64], shares: &[f64], carried: &[Placement], scale: f64) -> Stroke {
+    fn at(&self, weights: &[f64], shares: &Shares, carried: &[Placement], scale: f64) -> Stroke {
         let count = self.dashes.first().map_or(0, Vec::len);
         let dash = |k: usize| -> f64 { self.dashes.iter().zip(weights).map(|(of, weight)| of[k] * weight).sum() };
         Stroke {
@@ -347,22 +361,29 @@ fn mean(weights: &[f64], values: &[f64]) -> f64 {
     weights.iter().zip(values).map(|(weight, value)| weight * value).sum()
 }
 
-/// The mean of colours that are not premultiplied.
-fn mean_colour(shares: &[f64], colours: impl Iterator<Item = [f64; 4]> + Clone) -> [f64; 4] {
-    let alpha: f64 = shares
-        .iter()
-        .zip(colours.clone())
-        .map(|(share, colour)| share * colour[3])
-        .sum();
-    let mut mean = [0.0, 0.0, 0.0, alpha];
-    for (share, colour) in shares.iter().zip(colours) {
-        // All clear: then each counts by its share alone.
-        let part = if alpha > 0.0 { share * colour[3] / alpha } else { *share };
-        for (mean, c) in mean.iter_mut().zip(&colour[..3]) {
-            *mean += part * c;
+/// How much each drawing's colour counts, and in which light they are averaged.
+struct Shares {
+    parts: Vec<f64>,
+    blending: ColourBlend,
+}
+
+impl Shares {
+    /// The mean of colours that are not premultiplied.
+    fn mean_colour(&self, colours: impl Iterator<Item = [f64; 4]> + Clone) -> [f64; 4] {
+        let alpha: f64 = (self.parts.iter().zip(colours.clone()))
+            .map(|(share, colour)| share * colour[3])
+            .sum();
+        let mut mean = [0.0, 0.0, 0.0, alpha];
+        for (share, colour) in self.parts.iter().zip(colours) {
+            // All clear: then each counts by its share alone.
+            let part = if alpha > 0.0 { share * colour[3] / alpha } else { *share };
+            for (mean, c) in mean.iter_mut().zip(&colour[..3]) {
+                *mean += part * self.blending.light_of(*c);
+            }
         }
+        let [red, green, blue] = [0, 1, 2].map(|k| self.blending.value_of(mean[k]));
+        [red, green, blue, alpha].map(|c| c.clamp(0.0, 1.0))
     }
-    mean.map(|c| c.clamp(0.0, 1.0))
 }
 
 #[cfg(test)]
@@ -402,7 +423,7 @@ mod tests {
     fn blended(paints: [Option<Paint>; 2], weights: [f64; 2]) -> Paint {
         let elements = paints.map(filled);
         let styles = Styles::new(&elements.iter().collect::<Vec<_>>()).expect("styles that agree");
-        let (fill, _, _) = styles.at(&weights, &[Placement::IDENTITY; 2], 1.0);
+        let (fill, _, _) = styles.at(&weights, &[Placement::IDENTITY; 2], 1.0, ColourBlend::Plain);
         fill.expect("a fill").paint
     }
 
@@ -463,5 +484,23 @@ mod tests {
             fill.rule = FillRule::EvenOdd;
         }
         assert!(Styles::new(&[&filled(Some(Paint::Solid(RED))), &even_odd]).is_err());
+    }
+
+    #[test]
+    fn half_the_light_is_brighter_than_half_the_value() {
+        let elements = [filled(Some(Paint::Solid(RED))), filled(Some(Paint::Solid(BLUE)))];
+        let styles = Styles::new(&[&elements[0], &elements[1]]).expect("styles");
+        let colour = |blending| {
+            let (fill, _, _) = styles.at(&[0.5, 0.5], &[Placement::IDENTITY; 2], 1.0, blending);
+            match fill.map(|fill| fill.paint) {
+                Some(Paint::Solid(colour)) => colour,
+                other => panic!("{other:?}"),
+            }
+        };
+        assert_eq!(colour(ColourBlend::Plain), [0.5, 0.0, 0.5, 1.0]);
+        // The sRGB value of half the light, 188 of 255.
+        let [red, green, blue, alpha] = colour(ColourBlend::Linear);
+        assert!((red - 0.735_357).abs() < 1e-5 && red == blue, "{red} {blue}");
+        assert_eq!((green, alpha), (0.0, 1.0));
     }
 }
