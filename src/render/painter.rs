@@ -23,7 +23,7 @@ use super::coverage::{CoverageRows, edges};
 use super::level::Level;
 use super::raster::{PlacedVertices, Span};
 use super::reached::{Reached, nearest_reached};
-use super::sampler::{Channels, LANES, NOTHING, Walk, add_colours, look_up, rounded, whole_weights};
+use super::sampler::{Channels, LANES, NOTHING, Walk, add_colours, look_up, read_ahead, rounded, whole_weights};
 use super::{Camera, Frame, Silhouette, Texture};
 use crate::math::{Point, vectorised};
 use crate::mesh::geometry;
@@ -337,6 +337,9 @@ impl Scene<'_> {
             vectorised(
                 #[inline(always)]
                 || {
+                    for (shown, walk) in self.shown.iter().zip(walks) {
+                        read_ahead(shown.level, walk, pixels.len());
+                    }
                     for (run, pixels) in pixels.chunks_mut(LANES).enumerate() {
                         let colours = self.pixels(walks, run * LANES, pixels.len(), light);
                         pixels.copy_from_slice(&colours[..pixels.len()]);

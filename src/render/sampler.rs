@@ -10,7 +10,7 @@
 
 use wide::{bytemuck::cast, i16x8, i32x4, u8x16};
 
-use super::level::Level;
+use super::level::{Level, MOST_TEXELS};
 use crate::math::Point;
 
 /// Samples that are looked up at once.
@@ -98,6 +98,31 @@ impl Taps {
             self.left[lane] = ((weight - lower) | lower << 16) - self.right[lane];
         }
     }
+}
+
+/// Samples between texels that are read ahead: at one texel a sample, 64 bytes, as much as a cache fetches at once.
+const AHEAD_SAMPLES: usize = 16;
+/// How many rows below a walk texels are read ahead: the walk itself reads the next one, and in a moment so does the
+/// row below.
+const AHEAD_ROWS: i64 = 2;
+
+/// Reads texels that a walk of `count` samples and the row below it are about to need, to no other end than to have them
+/// near. Where a row crosses rows of texels slantwise, processors do not foresee what comes, and waiting for one after the
+/// other took half of the time; these reads wait for each other in no way.
+#[inline(always)]
+pub(super) fn read_ahead(level: &Level, walk: &Walk, count: usize) {
+    let mut place = [walk.start[0], walk.start[1].saturating_add(AHEAD_ROWS << FRACTION_BITS)];
+    let mut read = 0;
+    for _ in 0..count.div_ceil(AHEAD_SAMPLES) {
+        let [x, y] = place.map(|t| (t >> FRACTION_BITS).clamp(0, MOST_TEXELS as i64) as usize);
+        if let Some(texel) = level.texels().get(y * level.width() + x) {
+            read ^= u32::from_le_bytes(*texel);
+        }
+        for (place, step) in place.iter_mut().zip(walk.step) {
+            *place = place.saturating_add(AHEAD_SAMPLES as i64 * i64::from(step));
+        }
+    }
+    std::hint::black_box(read);
 }
 
 /// Adds the colours of the samples of a walk from `first` on to `sums`, one each, times `weight`, which is at most
