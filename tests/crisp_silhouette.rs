@@ -6,7 +6,7 @@
 
 use inbetween::pipeline::{Character, laid_out};
 use inbetween::render::Frame;
-use inbetween::scene::{Background, Scene};
+use inbetween::scene::{ArtChoice, Background, Scene};
 
 /// Between poses at most this times the widest of the poses.
 const WIDER: f64 = 1.5;
@@ -24,10 +24,11 @@ fn ramp_px(frame: &Frame) -> f64 {
     partly / length
 }
 
-fn check(name: &str) {
+fn check(name: &str, art: ArtChoice) {
     let path = format!("{}/data/{name}/scene.toml", env!("CARGO_MANIFEST_DIR"));
     let mut scene = laid_out(Scene::open(path.as_ref()).expect("a scene")).expect("places");
     scene.animation.background = Background::Transparent;
+    scene.art = art;
     let character = Character::new(&scene, [400, 400]).expect("a character");
     let count = scene.poses.len();
     let ramp = |weights: &[f64]| ramp_px(&character.frame_of(weights).expect("a frame"));
@@ -66,20 +67,30 @@ fn check(name: &str) {
 
 #[test]
 fn walker() {
-    check("walker");
+    check("walker", ArtChoice::Pixels);
 }
 
 #[test]
 fn clown() {
-    check("clown");
+    check("clown", ArtChoice::Pixels);
 }
 
 #[test]
 fn snake() {
-    check("snake");
+    check("snake", ArtChoice::Pixels);
 }
 
 #[test]
 fn face() {
-    check("face");
+    check("face", ArtChoice::Pixels);
+}
+
+#[test]
+fn snake_as_curves() {
+    check("snake", ArtChoice::Curves);
+}
+
+#[test]
+fn face_as_curves() {
+    check("face", ArtChoice::Curves);
 }

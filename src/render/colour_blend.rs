@@ -10,7 +10,7 @@
 
 use std::sync::LazyLock;
 
-use super::sampler::{Channels, LANES, WHOLE_CHANNEL};
+use super::sampler::{Channels, LANES, WEIGHT_BITS, WHOLE_CHANNEL};
 
 /// How colours of several textures are averaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -43,8 +43,11 @@ impl ColourBlend {
 }
 
 /// From a texture's channels to what is averaged, and from averages to pixels. What is averaged lies in
-/// `0..=WHOLE_CHANNEL`; sums have 16 bits more.
+/// `0..=WHOLE_CHANNEL`; sums have the bits of the weights more.
 pub(super) trait Light: Copy + Sync {
+    /// Whether what is averaged are the values as they are in the texture.
+    const AS_THEY_ARE: bool;
+
     fn decode(self, channels: Channels) -> Channels;
     fn encode(self, sums: &Channels) -> [[u8; 4]; LANES];
 }
@@ -54,6 +57,8 @@ pub(super) trait Light: Copy + Sync {
 pub(super) struct Plain;
 
 impl Light for Plain {
+    const AS_THEY_ARE: bool = true;
+
     #[inline(always)]
     fn decode(self, channels: Channels) -> Channels {
         channels
@@ -63,7 +68,7 @@ impl Light for Plain {
     fn encode(self, sums: &Channels) -> [[u8; 4]; LANES] {
         let mut pixels = [0u32; LANES];
         for lane in 0..LANES {
-            let byte = |k: usize| (sums[k][lane] + (1 << 23)) >> 24;
+            let byte = |k: usize| (sums[k][lane] + (1 << (WEIGHT_BITS + 7))) >> (WEIGHT_BITS + 8);
             pixels[lane] = byte(0) | byte(1) << 8 | byte(2) << 16 | byte(3) << 24;
         }
         pixels.map(u32::to_le_bytes)
@@ -82,6 +87,8 @@ impl Linear {
 }
 
 impl Light for Linear {
+    const AS_THEY_ARE: bool = false;
+
     #[inline(always)]
     fn decode(self, mut channels: Channels) -> Channels {
         for lane in 0..LANES {
@@ -97,7 +104,7 @@ impl Light for Linear {
     #[inline(always)]
     fn encode(self, sums: &Channels) -> [[u8; 4]; LANES] {
         std::array::from_fn(|lane| {
-            let mean = |k: usize| (sums[k][lane] >> 16) + ((sums[k][lane] >> 15) & 1);
+            let mean = |k: usize| (sums[k][lane] + (1 << (WEIGHT_BITS - 1))) >> WEIGHT_BITS;
             let alpha = mean(3);
             let byte = |k: usize| {
                 let value = self.0.value_of(unmultiplied(mean(k), alpha));
@@ -181,7 +188,7 @@ mod tests {
             let decoded = light.decode(colour.map(|c| [u32::from(c) << 8; LANES]));
             for (sum, channel) in sums.iter_mut().zip(decoded) {
                 for (s, c) in sum.iter_mut().zip(channel) {
-                    *s += c << 15;
+                    *s += c << (WEIGHT_BITS - 1);
                 }
             }
         }

@@ -23,7 +23,7 @@ use super::coverage::{CoverageRows, edges};
 use super::level::Level;
 use super::raster::{PlacedVertices, Span};
 use super::reached::{Reached, nearest_reached};
-use super::sampler::{Channels, LANES, Walk, look_up, whole_weights};
+use super::sampler::{Channels, LANES, NOTHING, Walk, add_colours, look_up, read_ahead, rounded, whole_weights};
 use super::{Camera, Frame, Silhouette, Texture};
 use crate::math::{Point, vectorised};
 use crate::mesh::geometry;
@@ -337,8 +337,11 @@ impl Scene<'_> {
             vectorised(
                 #[inline(always)]
                 || {
+                    for (shown, walk) in self.shown.iter().zip(walks) {
+                        read_ahead(shown.level, walk, pixels.len());
+                    }
                     for (run, pixels) in pixels.chunks_mut(LANES).enumerate() {
-                        let colours = light.encode(&self.colours(walks, run * LANES, light));
+                        let colours = self.pixels(walks, run * LANES, pixels.len(), light);
                         pixels.copy_from_slice(&colours[..pixels.len()]);
                     }
                 },
@@ -421,6 +424,19 @@ impl Scene<'_> {
             walks.extend(maps.iter().map(|map| Walk::new(map.apply(start), map.along_x)));
             paint(span, &walks);
         }
+    }
+
+    /// The colours of `count` samples of a span, at most `LANES`, from its sample `first` on.
+    #[inline(always)]
+    fn pixels<L: Light>(&self, walks: &[Walk], first: usize, count: usize, light: L) -> [[u8; 4]; LANES] {
+        if !L::AS_THEY_ARE {
+            return light.encode(&self.colours(walks, first, light));
+        }
+        let mut sums = NOTHING;
+        for (shown, walk) in self.shown.iter().zip(walks) {
+            add_colours(shown.level, walk, first, shown.weight, &mut sums[..count]);
+        }
+        rounded(&sums)
     }
 
     /// The weighted sums of the textures at `LANES` samples of a span, from its sample `first` on.
