@@ -89,11 +89,12 @@ impl Clock {
         if changes.len() < 2 || self.last == 0 {
             return;
         }
-        // Rounded down: not a moment late.
+        // Rounded down, and one decimal less: not a moment late. Players round the duration to microseconds and these times to
+        // single precision, and a time that meets a frame's own exactly may come out on either side of it.
         let whole = 10_f64.powi(TIME_DECIMALS as i32);
         let times: Vec<f64> = changes
             .iter()
-            .map(|(sample, _)| (self.share(*sample) * whole).floor() / whole)
+            .map(|(sample, _)| ((self.share(*sample) * whole).floor() - 1.0).max(0.0) / whole)
             .collect();
         let values: Vec<String> = changes.iter().map(|(_, value)| value.clone()).collect();
         let animation = Element::new("animate")

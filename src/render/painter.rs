@@ -23,7 +23,7 @@ use super::coverage::{CoverageRows, edges};
 use super::level::Level;
 use super::raster::{PlacedVertices, Span};
 use super::reached::{Reached, nearest_reached};
-use super::sampler::{Channels, LANES, NOTHING, Walk, add_colours, look_up, read_ahead, rounded, whole_weights};
+use super::sampler::{Channels, LANES, NOTHING, Walk, add_colours, look_up, paint, read_ahead, rounded, whole_weights};
 use super::{Camera, Frame, Silhouette, Texture};
 use crate::math::{Point, vectorised};
 use crate::mesh::geometry;
@@ -340,10 +340,7 @@ impl Scene<'_> {
                     for (shown, walk) in self.shown.iter().zip(walks) {
                         read_ahead(shown.level, walk, pixels.len());
                     }
-                    for (run, pixels) in pixels.chunks_mut(LANES).enumerate() {
-                        let colours = self.pixels(walks, run * LANES, pixels.len(), light);
-                        pixels.copy_from_slice(&colours[..pixels.len()]);
-                    }
+                    self.paint_span(walks, pixels, light);
                 },
             );
         });
@@ -423,6 +420,25 @@ impl Scene<'_> {
             walks.clear();
             walks.extend(maps.iter().map(|map| Walk::new(map.apply(start), map.along_x)));
             paint(span, &walks);
+        }
+    }
+
+    /// Paints the samples of a span, one a pixel.
+    #[inline(always)]
+    fn paint_span<L: Light>(&self, walks: &[Walk], pixels: &mut [[u8; 4]], light: L) {
+        let look = |k: usize| (self.shown[k].level, &walks[k], self.shown[k].weight);
+        // A few textures side by side, which is faster; more, and other light, one after the other.
+        match self.shown.len() {
+            1 if L::AS_THEY_ARE => paint([look(0)], pixels),
+            2 if L::AS_THEY_ARE => paint([look(0), look(1)], pixels),
+            3 if L::AS_THEY_ARE => paint([look(0), look(1), look(2)], pixels),
+            4 if L::AS_THEY_ARE => paint([look(0), look(1), look(2), look(3)], pixels),
+            _ => {
+                for (run, pixels) in pixels.chunks_mut(LANES).enumerate() {
+                    let colours = self.pixels(walks, run * LANES, pixels.len(), light);
+                    pixels.copy_from_slice(&colours[..pixels.len()]);
+                }
+            }
         }
     }
 

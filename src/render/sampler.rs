@@ -73,6 +73,12 @@ struct Taps {
 }
 
 impl Taps {
+    const NONE: Self = Self {
+        index: [0; LANES],
+        left: [0; LANES],
+        right: [0; LANES],
+    };
+
     /// Of samples `first..first + LANES` of a walk through a level. The parts of each sample sum to `weight`.
     #[inline(always)]
     fn find(&mut self, level: &Level, walk: &Walk, first: usize, weight: u32) {
@@ -129,25 +135,58 @@ pub(super) fn read_ahead(level: &Level, walk: &Walk, count: usize) {
 /// [`WHOLE_WEIGHT`]. Beyond the border the border's colour holds.
 #[inline(always)]
 pub(super) fn add_colours(level: &Level, walk: &Walk, first: usize, weight: u32, sums: &mut [i32x4]) {
-    let mut taps = Taps {
-        index: [0; LANES],
-        left: [0; LANES],
-        right: [0; LANES],
-    };
+    let mut taps = Taps::NONE;
     taps.find(level, walk, first, weight);
-    let lower = &level.texels()[level.width()..];
-    let upper = &level.texels()[..lower.len()];
-    let parts = taps.left.iter().zip(&taps.right);
-    for ((sum, index), (left, right)) in sums.iter_mut().zip(&taps.index).zip(parts) {
-        let range = *index as usize..*index as usize + 2;
-        // Always there: places are clamped.
-        let (Some([a, b]), Some([c, d])) = (upper.get(range.clone()), lower.get(range)) else {
-            return;
-        };
-        // Red of the upper and of the lower texel, then green: pairs that are multiplied by pairs of parts.
-        let columns = u8x16::unpack_low(side_by_side(*a, *b), side_by_side(*c, *d));
-        *sum += i16x8::from_u8x16_low(columns).dot(pairs(*left)) + i16x8::from_u8x16_high(columns).dot(pairs(*right));
+    let rows = level_rows(level);
+    for (lane, sum) in sums.iter_mut().enumerate().take(LANES) {
+        *sum += colour(rows, &taps, lane);
     }
+}
+
+/// A texture, the walk through it, and its weight.
+pub(super) type Look<'a> = (&'a Level, &'a Walk, u32);
+
+/// Paints the samples of walks, from their first on: the mean of `N` textures, whose weights sum to [`WHOLE_WEIGHT`].
+///
+/// As [`add_colours`] and [`rounded`] do texture by texture; here a sample's sum stays in a register.
+#[inline(always)]
+pub(super) fn paint<const N: usize>(looks: [Look<'_>; N], pixels: &mut [[u8; 4]]) {
+    let rows = looks.map(|(level, _, _)| level_rows(level));
+    let mut taps = [Taps::NONE; N];
+    for (run, pixels) in pixels.chunks_mut(LANES).enumerate() {
+        for (taps, (level, walk, weight)) in taps.iter_mut().zip(looks) {
+            taps.find(level, walk, run * LANES, weight);
+        }
+        for (lane, pixel) in pixels.iter_mut().enumerate().take(LANES) {
+            let mut sum = HALF;
+            for k in 0..N {
+                sum += colour(rows[k], &taps[k], lane);
+            }
+            *pixel = whole(sum);
+        }
+    }
+}
+
+/// The texels of a level that have one below them, and those that have one above them.
+#[inline(always)]
+fn level_rows(level: &Level) -> [&[[u8; 4]]; 2] {
+    let lower = &level.texels()[level.width()..];
+    [&level.texels()[..lower.len()], lower]
+}
+
+/// The colour at one of the samples of `taps`, times the weight.
+#[inline(always)]
+fn colour([upper, lower]: [&[[u8; 4]]; 2], taps: &Taps, lane: usize) -> i32x4 {
+    let index = taps.index[lane] as usize;
+    let range = index..index + 2;
+    // Always there: places are clamped.
+    let (Some([a, b]), Some([c, d])) = (upper.get(range.clone()), lower.get(range)) else {
+        return i32x4::ZERO;
+    };
+    // Red of the upper and of the lower texel, then green: pairs that are multiplied by pairs of parts.
+    let columns = u8x16::unpack_low(side_by_side(*a, *b), side_by_side(*c, *d));
+    i16x8::from_u8x16_low(columns).dot(pairs(taps.left[lane]))
+        + i16x8::from_u8x16_high(columns).dot(pairs(taps.right[lane]))
 }
 
 /// Two texels in the first eight lanes.
@@ -171,15 +210,19 @@ fn pairs(halves: u32) -> i16x8 {
 /// Sums whose weights are whole as pixels, rounded.
 #[inline(always)]
 pub(super) fn rounded(sums: &Sums) -> [[u8; 4]; LANES] {
-    let half = i32x4::splat(1 << (WEIGHT_BITS - 1));
-    let mut pixels = [[0; 4]; LANES];
-    for (pixel, sum) in pixels.iter_mut().zip(sums) {
-        let channels: i32x4 = (*sum + half) >> WEIGHT_BITS as i32;
-        let words = i16x8::from_i32x8_saturate(cast([channels, channels]));
-        let [first, ..]: [[u8; 4]; 4] = cast(u8x16::narrow_i16x8(words, words));
-        *pixel = first;
-    }
-    pixels
+    sums.map(|sum| whole(sum + HALF))
+}
+
+/// Half of [`WHOLE_WEIGHT`] in every channel: with it, [`whole`] rounds.
+const HALF: i32x4 = i32x4::new([1 << (WEIGHT_BITS - 1); 4]);
+
+/// A sum whose weights are whole as a pixel, rounded down.
+#[inline(always)]
+fn whole(sum: i32x4) -> [u8; 4] {
+    let channels: i32x4 = sum >> WEIGHT_BITS as i32;
+    let words = i16x8::from_i32x8_saturate(cast([channels, channels]));
+    let [first, ..]: [[u8; 4]; 4] = cast(u8x16::narrow_i16x8(words, words));
+    first
 }
 
 /// The colours of samples `first..first + LANES` of a walk, each channel in `0..=WHOLE_CHANNEL`.
