@@ -60,6 +60,7 @@ pub use write::runtime_bytes;
 
 use crate::blend::BlendOptions;
 use crate::math::Point;
+use crate::mesh::MeshPoint;
 use crate::pose::PoseSet;
 
 /// The first bytes of a file.
@@ -185,7 +186,7 @@ pub struct RuntimeLayer {
 }
 
 /// A point of a mesh in each pose: three vertices and their shares.
-pub type RuntimePoint = Vec<([usize; 3], [f64; 3])>;
+pub type RuntimePoint = Vec<MeshPoint>;
 
 /// A layer's point that is moved onto another layer's.
 #[derive(Debug, Clone, PartialEq)]

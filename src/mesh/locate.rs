@@ -2,7 +2,7 @@
 
 use rstar::{AABB, RTree, primitives::GeomWithData, primitives::Rectangle};
 
-use super::geometry;
+use super::{MeshPoint, geometry};
 use crate::math::{Point, point};
 
 /// A point found on a mesh.
@@ -19,6 +19,7 @@ type Entry = GeomWithData<Rectangle<[f64; 2]>, usize>;
 /// Finds the triangle at a point. Built in O(n log n), queried in about O(log n).
 #[derive(Debug, Clone)]
 pub struct PointLocator {
+    vertices: Vec<[usize; 3]>,
     triangles: Vec<[Point; 3]>,
     tree: RTree<Entry>,
 }
@@ -37,6 +38,7 @@ impl PointLocator {
             })
             .collect();
         Self {
+            vertices: triangles.to_vec(),
             triangles: corners,
             tree: RTree::bulk_load(boxes),
         }
@@ -87,6 +89,16 @@ impl PointLocator {
         }
         best.map(|(_, located)| located)
     }
+
+    /// The point of the mesh nearest to `p`, carried by its triangle. `None` only for a mesh without triangles.
+    #[must_use]
+    pub fn bind(&self, p: Point) -> Option<MeshPoint> {
+        let Located { triangle, barycentric } = self.nearest(p)?;
+        Some(MeshPoint {
+            vertices: self.vertices[triangle],
+            shares: barycentric,
+        })
+    }
 }
 
 /// Tiny negative coordinates set to zero, sum restored to 1.
@@ -109,5 +121,11 @@ mod tests {
         assert_eq!(locator.locate(Point::new(1.2, 0.8)), None);
         let nearest = locator.nearest(Point::new(2.0, 0.5)).expect("a mesh");
         assert_eq!((nearest.triangle, nearest.barycentric), (0, [0.0, 0.5, 0.5]));
+        let bound = locator.bind(Point::new(2.0, 0.5)).expect("a mesh");
+        assert_eq!(
+            (bound.vertices, bound.at(&positions)),
+            ([0, 1, 2], Point::new(1.0, 0.5))
+        );
+        assert_eq!(bound.at(&positions.map(|p| p * 2.0)), Point::new(2.0, 1.0));
     }
 }

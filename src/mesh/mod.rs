@@ -4,9 +4,11 @@
 mod flattening;
 pub mod geometry;
 mod locate;
+mod mesh_point;
 mod topology;
 pub mod validity;
 
 pub use flattening::first_flat;
 pub use locate::{Located, PointLocator};
+pub use mesh_point::MeshPoint;
 pub use topology::{Topology, TopologyError, directed_edges};

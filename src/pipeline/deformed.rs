@@ -163,12 +163,7 @@ fn deformed(
     let carried = CarriedOutline::new(topology, &base.positions, &positions, &base.outline)
         .map_err(|error| refusal(error.to_string()))?;
     let locator = PointLocator::new(topology.triangles(), &base.positions);
-    let carry = |p: &Point| -> Point {
-        locator.nearest(*p).map_or(*p, |found| {
-            let corners = topology.triangles()[found.triangle].iter().zip(found.barycentric);
-            corners.map(|(&v, share)| positions[v] * share).sum()
-        })
-    };
+    let carry = |p: &Point| -> Point { locator.bind(*p).map_or(*p, |bound| bound.at(&positions)) };
     let landmarks = base
         .landmarks
         .iter()

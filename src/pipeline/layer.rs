@@ -142,8 +142,7 @@ fn shape_point(scene: &Scene, anchor: &LayerAnchor, shape: &LayerShape, poses: &
     for pose in 0..poses.len() {
         let (original, _) = scene.drawing_of(pose)?;
         let place = anchor.at[original]?;
-        let located = PointLocator::new(triangles, &positions[poses[original]]).nearest(place)?;
-        anchors.push((triangles[located.triangle], located.barycentric));
+        anchors.push(PointLocator::new(triangles, &positions[poses[original]]).bind(place)?);
     }
     Some(ShapePoint::from_anchors(anchors))
 }

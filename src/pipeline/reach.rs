@@ -19,7 +19,7 @@ use super::layout::placed;
 use super::{PipelineError, map_drawings, read_drawings, weight_provider};
 use crate::blend::{BlendScratch, RigidBlend};
 use crate::math::{Point, point};
-use crate::mesh::{Located, PointLocator};
+use crate::mesh::{MeshPoint, PointLocator};
 use crate::pose::{LandmarkKind, PlacedLandmark, PoseSet};
 use crate::scene::Scene;
 use crate::solve::{DenseMatrix, SolvedDense};
@@ -67,8 +67,8 @@ impl Default for ReachOptions {
 /// carries the poses' points, as the drawn outline does.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShapePoint {
-    /// Per pose, the vertices and their shares.
-    anchors: Vec<([usize; 3], [f64; 3])>,
+    /// One a pose.
+    anchors: Vec<MeshPoint>,
 }
 
 impl ShapePoint {
@@ -78,10 +78,7 @@ impl ShapePoint {
     #[must_use]
     pub fn new(poses: &PoseSet, at: &[Point]) -> Option<Self> {
         let triangles = poses.topology().triangles();
-        let anchor = |(positions, place): (&Vec<Point>, &Point)| {
-            let Located { triangle, barycentric } = PointLocator::new(triangles, positions).nearest(*place)?;
-            Some((triangles[triangle], barycentric))
-        };
+        let anchor = |(positions, place): (&Vec<Point>, &Point)| PointLocator::new(triangles, positions).bind(*place);
         if at.len() != poses.len() {
             return None;
         }
@@ -89,30 +86,23 @@ impl ShapePoint {
         Some(Self { anchors })
     }
 
-    /// Per pose, the vertices and their shares.
-    pub(super) fn anchors(&self) -> &[([usize; 3], [f64; 3])] {
+    /// What it is in each pose.
+    pub(super) fn anchors(&self) -> &[MeshPoint] {
         &self.anchors
     }
 
-    /// The point that has these vertices and shares in each pose.
-    pub(super) fn from_anchors(anchors: Vec<([usize; 3], [f64; 3])>) -> Self {
+    /// The point that is these in the poses.
+    pub(super) fn from_anchors(anchors: Vec<MeshPoint>) -> Self {
         Self { anchors }
     }
 
     /// Where it is on the mesh at `positions`, blended with `weights`.
     #[must_use]
     pub fn at(&self, positions: &[Point], weights: &[f64]) -> Point {
-        let of_pose = |(vertices, shares): &([usize; 3], [f64; 3])| -> Point {
-            vertices
-                .iter()
-                .zip(shares)
-                .map(|(&v, share)| positions[v] * *share)
-                .sum()
-        };
         self.anchors
             .iter()
             .zip(weights)
-            .map(|(anchor, weight)| of_pose(anchor) * *weight)
+            .map(|(anchor, weight)| anchor.at(positions) * *weight)
             .sum()
     }
 }

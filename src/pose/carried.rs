@@ -50,14 +50,10 @@ impl CarriedOutline {
     /// # Errors
     /// [`CarryError`] if `to` is no embedding of the mesh, or flattens the outline.
     pub fn new(topology: &Topology, from: &[Point], to: &[Point], outline: &Outline) -> Result<Self, CarryError> {
-        let triangles = topology.triangles();
-        let locator = PointLocator::new(triangles, from);
+        let locator = PointLocator::new(topology.triangles(), from);
         let edges = mesh_edges(topology, from);
-        let carry = |p: Point| -> Result<Point, CarryError> {
-            let found = locator.nearest(p).ok_or(CarryError::NoTriangle)?;
-            let corners = triangles[found.triangle].iter().zip(found.barycentric);
-            Ok(corners.map(|(&v, share)| to[v] * share).sum())
-        };
+        let carry =
+            |p: Point| -> Result<Point, CarryError> { Ok(locator.bind(p).ok_or(CarryError::NoTriangle)?.at(to)) };
         let (mut carried, mut rings) = (Vec::new(), Vec::new());
         for ring in outline.rings() {
             let before = subdivided(ring, &edges);

@@ -119,14 +119,7 @@ impl Mapping {
             if locator.locate(*p).is_some() {
                 continue;
             }
-            let nearest = locator.nearest(*p).map(|found| {
-                let corners = self.poses.topology().triangles()[found.triangle];
-                corners
-                    .iter()
-                    .zip(found.barycentric)
-                    .map(|(&v, b)| positions[v] * b)
-                    .sum::<crate::math::Point>()
-            });
+            let nearest = locator.bind(*p).map(|bound| bound.at(positions));
             let distance = nearest.map_or(f64::INFINITY, |q| (q - p).norm());
             if distance > tolerance {
                 return Err(MappingError::NotEnclosed {

@@ -14,7 +14,7 @@
 
 use crate::matching::Correspondence;
 use crate::math::Point;
-use crate::mesh::PointLocator;
+use crate::mesh::{MeshPoint, PointLocator};
 use crate::outline::{ArcLength, Ring};
 use crate::pose::Mapping;
 
@@ -22,18 +22,11 @@ use crate::pose::Mapping;
 /// a pixel on an outline of 4000.
 const CLOSEST_ROWS: f64 = 5e-5;
 
-/// A point on a mesh.
-#[derive(Debug, Clone, Copy)]
-struct Anchor {
-    vertices: [usize; 3],
-    barycentric: [f64; 3],
-}
-
 /// The outlines of N poses in correspondence, fixed to the mesh.
 #[derive(Debug, Clone)]
 pub struct Silhouette {
     /// A ring: #rows x #poses anchors.
-    rings: Vec<Vec<Anchor>>,
+    rings: Vec<Vec<MeshPoint>>,
     pose_count: usize,
 }
 
@@ -49,13 +42,6 @@ impl Silhouette {
             .iter()
             .map(|positions| PointLocator::new(triangles, positions))
             .collect();
-        let anchor = |pose: usize, p: Point| {
-            let located = locators[pose].nearest(p)?;
-            Some(Anchor {
-                vertices: triangles[located.triangle],
-                barycentric: located.barycentric,
-            })
-        };
         let ring_count = mapping.outlines.iter().map(|o| o.rings().len()).min().unwrap_or(0);
         let mut rings = Vec::new();
         for ring in 0..ring_count {
@@ -68,10 +54,10 @@ impl Silhouette {
                 &by_mesh
             };
             let measured: Vec<ArcLength> = curves.iter().map(|curve| ArcLength::new(curve)).collect();
-            let anchors: Option<Vec<Anchor>> = row_coordinates(correspondence, &measured)
+            let anchors: Option<Vec<MeshPoint>> = row_coordinates(correspondence, &measured)
                 .into_iter()
                 .flat_map(|row| (0..pose_count).map(move |pose| (row, pose)))
-                .map(|(row, pose)| anchor(pose, measured[pose].at(correspondence.parameter(pose, row))))
+                .map(|(row, pose)| locators[pose].bind(measured[pose].at(correspondence.parameter(pose, row))))
                 .collect();
             // None: a mesh without triangles has no silhouette.
             rings.extend(anchors);
@@ -91,11 +77,7 @@ impl Silhouette {
                         row.iter()
                             .zip(weights)
                             .filter(|(_, weight)| **weight != 0.0)
-                            .map(|(anchor, weight)| {
-                                let [a, b, c] = anchor.vertices.map(|v| positions[v]);
-                                let [u, v, w] = anchor.barycentric;
-                                (a * u + b * v + c * w) * *weight
-                            })
+                            .map(|(anchor, weight)| anchor.at(positions) * *weight)
                             .sum()
                     })
                     .collect()

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::blend::{Anchor, BlendOptions, FrameGuard, Reference, Region, SoftAnchor, Stretch};
 use crate::math::{Point, predicate};
-use crate::mesh::{Topology, geometry};
+use crate::mesh::{MeshPoint, Topology, geometry};
 use crate::pose::PoseSet;
 
 /// How far from 1 weights may sum.
@@ -73,7 +73,7 @@ pub fn read_runtime(bytes: &[u8]) -> Result<RuntimeFile, RuntimeError> {
             if tie
                 .other
                 .iter()
-                .any(|(corners, _)| corners.iter().any(|&v| v >= vertices))
+                .any(|point| point.vertices.iter().any(|&v| v >= vertices))
             {
                 return reader.damaged("a tie holds a vertex that does not exist");
             }
@@ -367,7 +367,10 @@ impl<'a> Reader<'a> {
                         return self.damaged("a tie holds a vertex that does not exist");
                     }
                 }
-                Ok((corners, shares))
+                Ok(MeshPoint {
+                    vertices: corners,
+                    shares,
+                })
             })
             .collect()
     }

@@ -6,12 +6,18 @@ use super::*;
 use crate::blend::{Anchor, FrameGuard, Reference, Region, RigidBlend, SoftAnchor, Stretch};
 use crate::export::puppet_motion::testing::turning;
 use crate::export::puppet_motion::texture_png;
-use crate::mesh::Topology;
+use crate::mesh::{MeshPoint, Topology};
 
 /// The two squares, the second hung on the first.
 fn character() -> RuntimeFile {
     let puppet = turning().puppet;
-    let point = |count: usize| vec![([0, 1, 2], [0.5, 0.25, 0.25]); count];
+    let point = |count: usize| {
+        let point = MeshPoint {
+            vertices: [0, 1, 2],
+            shares: [0.5, 0.25, 0.25],
+        };
+        vec![point; count]
+    };
     let layers: Vec<RuntimeLayer> = puppet
         .layers
         .iter()
@@ -173,10 +179,14 @@ fn unsound_characters_are_refused() {
         (|c| c.animation.weights[1][1] = 0.5, "sum to 1"),
         (
             |c| {
+                let corner = MeshPoint {
+                    vertices: [0; 3],
+                    shares: [0.0; 3],
+                };
                 c.layers[0].tie = Some(RuntimeTie {
                     to: 1,
-                    own: vec![([0; 3], [0.0; 3]); 2],
-                    other: vec![([0; 3], [0.0; 3]); 2],
+                    own: vec![corner; 2],
+                    other: vec![corner; 2],
                 })
             },
             "circle",

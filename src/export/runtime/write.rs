@@ -5,6 +5,7 @@ use super::{
 };
 use crate::blend::{Anchor, FrameGuard, Reference, Stretch};
 use crate::math::{Point, point};
+use crate::mesh::MeshPoint;
 
 /// The bytes of a file, and what reading them gives: positions are rounded.
 ///
@@ -168,7 +169,7 @@ impl Writer {
     }
 
     fn point(&mut self, point: &RuntimePoint) -> Result<(), RuntimeError> {
-        for (vertices, shares) in point {
+        for MeshPoint { vertices, shares } in point {
             for (vertex, share) in vertices.iter().zip(shares) {
                 self.count(*vertex)?;
                 self.double(*share);

@@ -178,10 +178,10 @@ fn newton_step(
         }
     }
     for (row, missing) in constraint.rows().iter().zip(missing) {
-        for (&a, share) in row.vertices.iter().zip(row.barycentric) {
+        for (&a, share) in row.vertices.iter().zip(row.shares) {
             downhill[2 * a][0] += PULL * share * missing.x;
             downhill[2 * a + 1][0] += PULL * share * missing.y;
-            for (&b, other) in row.vertices.iter().zip(row.barycentric) {
+            for (&b, other) in row.vertices.iter().zip(row.shares) {
                 hessian.add(2 * a, 2 * b, PULL * share * other);
                 hessian.add(2 * a + 1, 2 * b + 1, PULL * share * other);
             }
@@ -198,7 +198,7 @@ fn newton_step(
     for equation in 0..count {
         let row = &constraint.rows()[equation / 2];
         let mut response = vec![[0.0; 1]; size];
-        for (&vertex, share) in row.vertices.iter().zip(row.barycentric) {
+        for (&vertex, share) in row.vertices.iter().zip(row.shares) {
             response[2 * vertex + equation % 2][0] = share;
         }
         factor.solve(&mut response, &mut buffer)?;
@@ -206,7 +206,7 @@ fn newton_step(
     }
     let at = |equation: usize, values: &[[f64; 1]]| -> f64 {
         let row = &constraint.rows()[equation / 2];
-        let shares = row.vertices.iter().zip(row.barycentric);
+        let shares = row.vertices.iter().zip(row.shares);
         shares
             .map(|(&vertex, share)| share * values[2 * vertex + equation % 2][0])
             .sum()

@@ -31,7 +31,7 @@ impl Conformal {
         let mut columns = Vec::with_capacity(count);
         for row in constraint.rows() {
             let mut right = vec![Point::zeros(); shape.rest().len()];
-            for (&vertex, &share) in row.vertices.iter().zip(&row.barycentric) {
+            for (&vertex, &share) in row.vertices.iter().zip(&row.shares) {
                 right[vertex].x = share;
             }
             columns.push(shape.solve_conformal(&right)?);

@@ -14,7 +14,7 @@
 use super::HandleError;
 use super::rest::RestShape;
 use crate::math::{Point, point};
-use crate::mesh::{PointLocator, geometry};
+use crate::mesh::{MeshPoint, PointLocator, geometry};
 use crate::solve::{DenseMatrix, SolveError, SolvedDense};
 
 /// How far outside the mesh a handle may lie, as a fraction of the pose's diagonal: an outline point may, by the rounding of
@@ -28,29 +28,13 @@ const DEPENDENT: f64 = 1e-6;
 #[derive(Debug, Clone)]
 pub(super) struct Constraint {
     /// The rows of `C`.
-    rows: Vec<Row>,
+    rows: Vec<MeshPoint>,
     /// Where the handles are at rest.
     places: Vec<Point>,
     /// `L' C^T`: #vertices x #handles.
     response: Vec<f64>,
     /// Of the small matrix: (#handles + 1) squared.
     inverse: Vec<f64>,
-}
-
-/// A handle on its triangle.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Row {
-    pub(super) vertices: [usize; 3],
-    pub(super) barycentric: [f64; 3],
-}
-
-impl Row {
-    /// Where the handle is.
-    pub(super) fn at(&self, positions: &[Point]) -> Point {
-        let [a, b, c] = self.vertices.map(|v| positions[v]);
-        let [u, v, w] = self.barycentric;
-        a * u + b * v + c * w
-    }
 }
 
 impl Constraint {
@@ -62,7 +46,7 @@ impl Constraint {
         for (handle, row) in rows.iter().enumerate() {
             right.clear();
             right.resize(vertex_count, [0.0; 2]);
-            for (&vertex, &share) in row.vertices.iter().zip(&row.barycentric) {
+            for (&vertex, &share) in row.vertices.iter().zip(&row.shares) {
                 right[vertex][0] = share;
             }
             shape.solve(&mut right, &mut buffer)?;
@@ -75,11 +59,7 @@ impl Constraint {
                 (true, true) => {
                     let at = |v: usize| response[v * count + column];
                     let of = &rows[row];
-                    of.vertices
-                        .iter()
-                        .zip(of.barycentric)
-                        .map(|(&v, share)| share * at(v))
-                        .sum()
+                    of.vertices.iter().zip(of.shares).map(|(&v, share)| share * at(v)).sum()
                 }
                 (false, false) => 0.0,
                 _ => 1.0,
@@ -98,7 +78,7 @@ impl Constraint {
         self.rows.len()
     }
 
-    pub(super) fn rows(&self) -> &[Row] {
+    pub(super) fn rows(&self) -> &[MeshPoint] {
         &self.rows
     }
 
@@ -111,7 +91,7 @@ impl Constraint {
         let count = self.rows.len();
         small.clear();
         small.extend(self.rows.iter().zip(targets).map(|(row, target)| {
-            let here = row.vertices.iter().zip(row.barycentric);
+            let here = row.vertices.iter().zip(row.shares);
             target - here.map(|(&v, share)| Point::from(positions[v]) * share).sum::<Point>()
         }));
         for row in 0..=count {
@@ -131,7 +111,7 @@ impl Constraint {
     }
 }
 
-fn located(shape: &RestShape, handles: &[Point]) -> Result<Vec<Row>, HandleError> {
+fn located(shape: &RestShape, handles: &[Point]) -> Result<Vec<MeshPoint>, HandleError> {
     let locator = PointLocator::new(shape.triangles(), shape.rest());
     let mut rows = Vec::with_capacity(handles.len());
     for (handle, &place) in handles.iter().enumerate() {
@@ -143,11 +123,7 @@ fn located(shape: &RestShape, handles: &[Point]) -> Result<Vec<Row>, HandleError
         if !point::is_finite(place) {
             return Err(bad());
         }
-        let found = locator.nearest(place).ok_or_else(bad)?;
-        let row = Row {
-            vertices: shape.triangles()[found.triangle],
-            barycentric: found.barycentric,
-        };
+        let row = locator.bind(place).ok_or_else(bad)?;
         let nearest = row.at(shape.rest());
         let distance = (nearest - place).norm();
         if distance > OUTSIDE * shape.size() {

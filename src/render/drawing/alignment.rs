@@ -109,7 +109,7 @@ fn turn_alike(paths: &mut [Vec<CubicBez>], meshes: &[&PoseMesh]) {
     let nodes = |path: &[CubicBez], mesh: &PoseMesh| {
         freed(
             path.iter()
-                .map(|c| mesh.bind_here(to_point(c.p0)).place(common))
+                .map(|c| mesh.bind_here(to_point(c.p0)).at(common))
                 .collect(),
         )
     };
@@ -197,7 +197,7 @@ impl Measured {
             let at = this.parameter(k as f64 / SAMPLES as f64);
             let index = (at as usize).min(this.path.len() - 1);
             mesh.bind_here(to_point(this.path[index].eval(at - index as f64)))
-                .place(common)
+                .at(common)
         };
         this.samples = freed((0..count).map(sample).collect());
         this

@@ -3,24 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::math::{Point, point};
-use crate::mesh::{PointLocator, geometry};
-
-/// A point as a combination of the three vertices of a triangle: carried by the triangle's affine map wherever it lies, inside
-/// or outside.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Anchor {
-    vertices: [usize; 3],
-    shares: [f64; 3],
-}
-
-impl Anchor {
-    /// Where it is when the vertices are at `positions`.
-    pub(super) fn place(&self, positions: &[Point]) -> Point {
-        let [a, b, c] = self.vertices.map(|vertex| positions[vertex]);
-        let [u, v, w] = self.shares;
-        a * u + b * v + c * w
-    }
-}
+use crate::mesh::{MeshPoint, PointLocator, geometry};
 
 /// The mesh as it lies in the pose that a drawing was made for.
 #[derive(Debug)]
@@ -60,18 +43,18 @@ impl<'a> PoseMesh<'a> {
             .map_or(0, |(_, triangle)| triangle)
     }
 
-    /// `p`, carried by the given triangle.
-    pub(super) fn bind(&self, p: Point, triangle: usize) -> Anchor {
+    /// `p`, carried by the given triangle, in which it need not lie.
+    pub(super) fn bind(&self, p: Point, triangle: usize) -> MeshPoint {
         let vertices = self.triangles.get(triangle).copied().unwrap_or_default();
         let shares = geometry::barycentric(geometry::corners(self.positions, vertices), p);
-        Anchor {
+        MeshPoint {
             vertices,
             shares: shares.unwrap_or([1.0, 0.0, 0.0]),
         }
     }
 
     /// `p`, carried by the triangle at it.
-    pub(super) fn bind_here(&self, p: Point) -> Anchor {
+    pub(super) fn bind_here(&self, p: Point) -> MeshPoint {
         self.bind(p, self.triangle_at(p))
     }
 }
@@ -107,6 +90,6 @@ mod tests {
         // By the triangle's own affine map: x of a point is doubled.
         let wider = positions.map(|p| Point::new(2.0 * p.x, p.y));
         let outside = Point::new(3.0, 0.4);
-        assert!((mesh.bind_here(outside).place(&wider) - Point::new(6.0, 0.4)).norm() < 1e-12);
+        assert!((mesh.bind_here(outside).at(&wider) - Point::new(6.0, 0.4)).norm() < 1e-12);
     }
 }

@@ -91,7 +91,7 @@ struct Place {
 
 impl Place {
     fn of(subpath: &Subpath, mesh: &PoseMesh, common: &[Point]) -> Self {
-        let carried: Vec<Point> = subpath.points().map(|p| mesh.bind_here(*p).place(common)).collect();
+        let carried: Vec<Point> = subpath.points().map(|p| mesh.bind_here(*p).at(common)).collect();
         Self {
             middle: middle(&carried),
             size: point::diagonal(&carried),

@@ -15,9 +15,10 @@
 
 use kurbo::{CubicBez, ParamCurve};
 
-use super::binding::{Anchor, PoseMesh};
+use super::binding::PoseMesh;
 use crate::input::Subpath;
 use crate::math::{Point, point, rotation};
+use crate::mesh::MeshPoint;
 
 /// How far a carried piece may be from the curve carried point by point, in pixels of the frame. A quarter of it gives twice as
 /// many curves and the same picture.
@@ -46,7 +47,7 @@ const GOES_ON_RAD: f64 = 0.035;
 pub(super) struct Strand {
     pub(super) is_closed: bool,
     /// #points x #drawings: the start, then two control points and the end of every curve.
-    anchors: Vec<Anchor>,
+    anchors: Vec<MeshPoint>,
     drawing_count: usize,
     /// Joints whose turn is kept.
     joints: Vec<Joint>,
@@ -82,24 +83,26 @@ impl Strand {
             divide(curve.clone(), carriers, MOST_DIVISIONS, &mut pieces);
         }
         let drawing_count = carriers.meshes.len();
-        let mut anchors: Vec<Anchor> = Vec::with_capacity((1 + 3 * pieces.len()) * drawing_count);
-        let by_drawing = |piece: &Piece, which: fn(&Bound) -> Anchor| -> Vec<Anchor> {
-            piece
+        let mut anchors: Vec<MeshPoint> = Vec::with_capacity((1 + 3 * pieces.len()) * drawing_count);
+        let bound_everywhere = |piece: &Piece| -> Vec<Bound> {
+            let bound = piece
                 .iter()
                 .zip(&carriers.meshes)
-                .map(|(curve, mesh)| which(&bound(curve, mesh)))
-                .collect()
+                .map(|(curve, mesh)| bound(curve, mesh));
+            bound.collect()
         };
-        if let Some(first) = pieces.first() {
-            anchors.extend(by_drawing(first, |bound| bound[0]));
-        }
         for (k, piece) in pieces.iter().enumerate() {
-            anchors.extend(by_drawing(piece, |bound| bound[1]));
-            anchors.extend(by_drawing(piece, |bound| bound[2]));
+            let bound = bound_everywhere(piece);
+            let mut append = |point: usize| anchors.extend(bound.iter().map(|bound| bound[point]));
+            if k == 0 {
+                append(0);
+            }
+            append(1);
+            append(2);
             if is_closed && k + 1 == pieces.len() {
                 anchors.extend_from_within(..drawing_count);
             } else {
-                anchors.extend(by_drawing(piece, |bound| bound[3]));
+                append(3);
             }
         }
         Self {
@@ -111,7 +114,7 @@ impl Strand {
     }
 
     /// Shrinks it to a point in drawing `drawing`, in which it is not: to `place`.
-    pub(super) fn shrink(&mut self, drawing: usize, place: Anchor) {
+    pub(super) fn shrink(&mut self, drawing: usize, place: MeshPoint) {
         for row in self.anchors.chunks_exact_mut(self.drawing_count) {
             row[drawing] = place;
         }
@@ -123,7 +126,7 @@ impl Strand {
             .iter()
             .skip(drawing)
             .step_by(self.drawing_count.max(1))
-            .map(|anchor| anchor.place(positions))
+            .map(|anchor| anchor.at(positions))
     }
 
     /// The subpath where the mesh lies at `positions` and the drawings count with `weights`; every point is then mapped by
@@ -136,7 +139,7 @@ impl Strand {
                 row.iter()
                     .zip(weights)
                     .filter(|(_, weight)| **weight != 0.0)
-                    .map(|(anchor, weight)| anchor.place(positions) * *weight)
+                    .map(|(anchor, weight)| anchor.at(positions) * *weight)
                     .sum()
             })
             .collect();
@@ -185,7 +188,7 @@ impl Strand {
 }
 
 /// A curve's four anchors.
-type Bound = [Anchor; 4];
+type Bound = [MeshPoint; 4];
 
 fn bound(curve: &CubicBez, mesh: &PoseMesh) -> Bound {
     let (first, last) = end_triangles(curve, mesh);
@@ -253,16 +256,16 @@ impl Carried {
                 division: 0.5,
             };
         }
-        let anchors: Vec<Anchor> = (0..=SAMPLES)
+        let anchors: Vec<MeshPoint> = (0..=SAMPLES)
             .map(|k| mesh.bind(point_at(at(k)), triangles[k]))
             .collect();
         let ends = bound(curve, mesh);
         let mut deviation: f64 = 0.0;
         for positions in carriers.poses {
-            let [a, b, c, d] = ends.map(|anchor| anchor.place(positions));
+            let [a, b, c, d] = ends.map(|anchor| anchor.at(positions));
             let carried = CubicBez::new((a.x, a.y), (b.x, b.y), (c.x, c.y), (d.x, d.y));
             for (k, anchor) in anchors.iter().enumerate().take(SAMPLES).skip(1) {
-                deviation = deviation.max((anchor.place(positions) - to_point(carried.eval(at(k)))).norm());
+                deviation = deviation.max((anchor.at(positions) - to_point(carried.eval(at(k)))).norm());
             }
         }
         let crossing = (0..SAMPLES)
