@@ -236,6 +236,25 @@ fn copies_of_a_pose_show_its_drawing() {
     assert!((in_units(shapes[0])[0] - Point::new(40.0, 60.0)).norm() < 1e-9);
 }
 
+/// A curve that begins a hair before an edge and crosses it at once.
+#[test]
+fn an_end_just_before_an_edge_stays_on_its_side() {
+    let bent = [SQUARE[0], SQUARE[1], SQUARE[2], [10.0, 60.0]];
+    let mapping = mapping(&[SQUARE, bent]);
+    let body = r#"<path d="M98.92 98.9191C1 22 1 1 1 1" fill="none" stroke="red"/><rect width="100" height="100"/>"#;
+    let (carried, _) = carried(&mapping, &[body]);
+    let start_at = |pose: usize| {
+        in_units(shapes(&carried.frame(&mapping.poses.positions()[pose], &[1.0, 0.0], &[1.0, 0.0]))[0])[0]
+    };
+    // Above the diagonal nothing moves.
+    assert!(
+        (start_at(1) - start_at(0)).norm() < 1e-9,
+        "{} {}",
+        start_at(0),
+        start_at(1)
+    );
+}
+
 #[test]
 fn a_part_that_only_one_drawing_has_shrinks_to_a_point() {
     let mapping = mapping(&[SQUARE, SQUARE]);

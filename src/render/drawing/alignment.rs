@@ -107,11 +107,7 @@ fn meet(curves: &mut [Vec<CubicBez>], is_closed: bool) {
 fn turn_alike(paths: &mut [Vec<CubicBez>], meshes: &[&PoseMesh]) {
     let common = meshes[0].positions();
     let nodes = |path: &[CubicBez], mesh: &PoseMesh| {
-        freed(
-            path.iter()
-                .map(|c| mesh.bind_here(to_point(c.p0)).at(common))
-                .collect(),
-        )
+        freed(path.iter().map(|c| mesh.bind_here(to_point(c.p0)).at(common)).collect())
     };
     let wanted = nodes(&paths[0], meshes[0]);
     let count = wanted.len();

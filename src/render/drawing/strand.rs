@@ -3,7 +3,7 @@
 //! A cubic inside one triangle is carried exactly by the triangle's affine map. One that crosses edges is divided at crossings,
 //! until carrying the pieces' control points is as good as carrying every point of the curve:
 //!
-//! 1. A piece's ends are bound to the triangles at them, its two control points to the triangles in which it starts and ends.
+//! 1. A piece's ends are bound to the triangles they lie in, its two control points to the triangles in which it starts and ends.
 //! 2. Its greatest distance from the curve carried point by point is sampled in all poses of the mesh. Above [`TOLERANCE_PX`]
 //!    the piece is divided at the crossing nearest to its middle, in all drawings at the same parameter, so that they keep the same
 //!    number of curves.
@@ -193,11 +193,12 @@ type Bound = [MeshPoint; 4];
 fn bound(curve: &CubicBez, mesh: &PoseMesh) -> Bound {
     let (first, last) = end_triangles(curve, mesh);
     let [a, b, c, d] = control_points(curve);
+    // An end may lie just before an edge that the curve then crosses: it is bound to its own triangle, not to the curve's.
     [
-        mesh.bind(a, first),
+        mesh.bind_here(a),
         mesh.bind(b, first),
         mesh.bind(c, last),
-        mesh.bind(d, last),
+        mesh.bind_here(d),
     ]
 }
 
