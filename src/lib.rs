@@ -68,6 +68,8 @@ pub mod texture;
 
 pub mod render;
 
+pub mod shape3d;
+
 // What stands around them.
 pub mod scene;
 

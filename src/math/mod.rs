@@ -10,6 +10,7 @@
 pub mod angle;
 pub mod matrix;
 pub mod point;
+mod point3;
 pub mod predicate;
 mod restricted;
 pub mod sine;
@@ -18,6 +19,7 @@ mod vectorised;
 
 pub use matrix::{Matrix, PolarSplit, rotation};
 pub use point::Point;
+pub use point3::Point3;
 pub use restricted::restricted_weights;
 pub use smooth_step::{limit_weights, smooth_step};
 pub use vectorised::vectorised;
