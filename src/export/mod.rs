@@ -9,6 +9,7 @@ mod changes;
 mod ffmpeg;
 mod gif;
 mod gltf;
+mod gltf_buffer;
 mod keyed;
 mod keys;
 mod lottie;
