@@ -20,6 +20,7 @@ mod puppet_texture;
 pub mod raster;
 mod reached;
 mod sampler;
+pub mod shaded;
 mod silhouette;
 mod texture;
 
