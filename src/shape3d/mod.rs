@@ -5,16 +5,30 @@
 //! - [`FormTopology`] is what all forms share, [`Form`] where one has its vertices.
 //! - [`Shape`] is the forms with their places, open to editing: examples are moved, inserted, removed, and pseudo-examples
 //!   bend the space (SBE 4).
+//! - [`Skeleton`] moves joints with the adjectives, [`Skin`] says what follows them; [`Rig`] takes examples to the rest
+//!   position and [`Poser`] the blend of them to its pose (SBE 5).
 //!
 //! A place of the space is one value an adjective, in the order in which the adjectives are given.
 
 mod error;
 mod face;
 mod form;
+mod rig;
+mod rig_error;
 mod shape;
+mod skeleton;
+mod skin;
 mod topology;
+mod transform;
+mod untransform;
 
 pub use error::{FormError, ShapeError};
 pub use form::Form;
+pub use rig::{Poser, Rig, RigScratch};
+pub use rig_error::RigError;
 pub use shape::{Example, Shape};
+pub use skeleton::{Joint, LocalPose, Scaling, Shift, Skeleton, Turn};
+pub use skin::{Skin, WEIGHT_SUM_TOLERANCE};
 pub use topology::{FormFace, FormTopology};
+pub use transform::{Matrix3, Transform};
+pub use untransform::{CONDITION_LIMIT, NearSingular, Residuals, RestForm, untransform};
