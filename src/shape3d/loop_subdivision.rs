@@ -27,7 +27,7 @@ mod texture;
 #[cfg(test)]
 mod tests;
 
-pub use texture::subdivide_texture;
+pub use texture::{SubdividedTexture, subdivide_texture};
 
 use sprs::CsMat;
 

@@ -28,8 +28,8 @@ mod untransform;
 pub use error::{FormError, ShapeError};
 pub use form::Form;
 pub use loop_subdivision::{
-    LoopSubdivision, MOST_TRIANGLES, SubdividedPositions, SubdivisionError, SubdivisionOptions, SubdivisionScratch,
-    subdivide_texture,
+    LoopSubdivision, MOST_TRIANGLES, SubdividedPositions, SubdividedTexture, SubdivisionError, SubdivisionOptions,
+    SubdivisionScratch, subdivide_texture,
 };
 pub use normals::{NormalWeighting, vertex_normals, vertex_normals_into, vertex_normals_planes};
 pub use rig::{Poser, Rig, RigScratch};

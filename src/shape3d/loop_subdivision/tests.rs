@@ -203,10 +203,12 @@ fn single_precision_is_the_same_and_allocates_nothing() {
 fn seams_of_the_texture_stay_apart() {
     // Two triangles of a square whose common edge is a seam.
     let coordinates = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 1.0], [1.0, 0.5], [1.0, 1.0]];
-    let (finer, triangles) = subdivide_texture(&coordinates, &[[0, 1, 2], [4, 5, 3]], 1).expect("triangles");
+    let SubdividedTexture {
+        coordinates: finer,
+        triangles,
+    } = subdivide_texture(&coordinates, &[[0, 1, 2], [4, 5, 3]], 1).expect("triangles");
     assert_eq!(finer.len(), 12);
-    let (_, first) = (&triangles[..4], &triangles[0]);
-    assert_eq!(finer[first[1]], [0.5, 0.0]);
+    assert_eq!(finer[triangles[0][1]], [0.5, 0.0]);
     let corners = |range: std::ops::Range<usize>| -> std::collections::BTreeSet<usize> {
         triangles[range].iter().flatten().copied().collect()
     };
@@ -214,12 +216,11 @@ fn seams_of_the_texture_stay_apart() {
     // The order of the triangles is that of the geometry.
     let smooth = subdivision(4, &[[0, 1, 2], [1, 3, 2]], 1, REFINED);
     let geometry = [Point3::zeros(), Point3::x(), Point3::y(), Point3::new(1.0, 1.0, 0.0)];
-    let (coordinates, texture) =
-        subdivide_texture(&geometry.map(|at| [at.x, at.y]), &[[0, 1, 2], [1, 3, 2]], 1).expect("triangles");
-    for (triangle, texture) in smooth.triangles().iter().zip(&texture) {
+    let fine = subdivide_texture(&geometry.map(|at| [at.x, at.y]), &[[0, 1, 2], [1, 3, 2]], 1).expect("triangles");
+    for (triangle, texture) in smooth.triangles().iter().zip(&fine.triangles) {
         for (&vertex, &corner) in triangle.iter().zip(texture) {
             if vertex < 4 {
-                assert_eq!(coordinates[corner], [geometry[vertex].x, geometry[vertex].y]);
+                assert_eq!(fine.coordinates[corner], [geometry[vertex].x, geometry[vertex].y]);
             }
         }
     }

@@ -2,6 +2,15 @@
 
 use super::{SubdivisionError, check_triangles, divided};
 
+/// Texture coordinates and their triangles.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SubdividedTexture {
+    /// Places in the texture.
+    pub coordinates: Vec<[f64; 2]>,
+    /// Indices of them, in the order of the mesh's own triangles.
+    pub triangles: Vec<[usize; 3]>,
+}
+
 /// Texture coordinates and their triangles, subdivided linearly `steps` times: new ones are half-way between two old ones.
 ///
 /// Triangles of texture coordinates are a mesh of their own that is cut open along seams, so every seam is kept, and the
@@ -13,7 +22,7 @@ pub fn subdivide_texture(
     coordinates: &[[f64; 2]],
     triangles: &[[usize; 3]],
     steps: usize,
-) -> Result<(Vec<[f64; 2]>, Vec<[usize; 3]>), SubdivisionError> {
+) -> Result<SubdividedTexture, SubdivisionError> {
     check_triangles(coordinates.len(), triangles, steps)?;
     let (mut coordinates, mut triangles) = (coordinates.to_vec(), triangles.to_vec());
     for _ in 0..steps {
@@ -32,7 +41,7 @@ pub fn subdivide_texture(
         }
         triangles = divided(&triangles, &sides, count);
     }
-    Ok((coordinates, triangles))
+    Ok(SubdividedTexture { coordinates, triangles })
 }
 
 fn sides_of(&[a, b, c]: &[usize; 3]) -> [[usize; 2]; 3] {
