@@ -7,12 +7,15 @@
 //!   bend the space (SBE 4).
 //! - [`Skeleton`] moves joints with the adjectives, [`Skin`] says what follows them; [`Rig`] takes examples to the rest
 //!   position and [`Poser`] the blend of them to its pose (SBE 5).
+//! - [`LoopSubdivision`] makes a smooth surface with normals of a form (SBE 6.1); [`vertex_normals`] are those of its triangles.
 //!
 //! A place of the space is one value an adjective, in the order in which the adjectives are given.
 
 mod error;
 mod face;
 mod form;
+mod loop_subdivision;
+mod normals;
 mod rig;
 mod rig_error;
 mod shape;
@@ -24,6 +27,11 @@ mod untransform;
 
 pub use error::{FormError, ShapeError};
 pub use form::Form;
+pub use loop_subdivision::{
+    LoopSubdivision, MOST_TRIANGLES, SubdividedPositions, SubdividedTexture, SubdivisionError, SubdivisionOptions,
+    SubdivisionScratch, subdivide_texture,
+};
+pub use normals::{NormalWeighting, vertex_normals, vertex_normals_into, vertex_normals_planes};
 pub use rig::{Poser, Rig, RigScratch};
 pub use rig_error::RigError;
 pub use shape::{Example, Shape};
