@@ -40,7 +40,9 @@ pub enum CellKind {
 impl CellKind {
     const ALL: [Self; 4] = [Self::Example, Self::PseudoExample, Self::Between, Self::Beyond];
 
-    fn look(self) -> Look {
+    /// What a form of this kind is made of.
+    #[must_use]
+    pub fn look(self) -> Look {
         let (colour, surface) = match self {
             Self::Example => ([158, 84, 58], Surface::Even),
             Self::PseudoExample => ([190, 128, 98], Surface::Grainy),
