@@ -8,9 +8,11 @@
 //! - [`Skeleton`] moves joints with the adjectives, [`Skin`] says what follows them; [`Rig`] takes examples to the rest
 //!   position and [`Poser`] the blend of them to its pose (SBE 5).
 //! - [`LoopSubdivision`] makes a smooth surface with normals of a form (SBE 6.1); [`vertex_normals`] are those of its triangles.
+//! - [`FormBlender`] blends the forms at run time, in single precision; [`ImageBlend`] their textures.
 //!
 //! A place of the space is one value an adjective, in the order in which the adjectives are given.
 
+mod blender;
 mod error;
 mod face;
 mod form;
@@ -18,6 +20,7 @@ mod loop_subdivision;
 mod normals;
 mod rig;
 mod rig_error;
+mod image_blend;
 mod shape;
 mod skeleton;
 mod skin;
@@ -25,6 +28,7 @@ mod topology;
 mod transform;
 mod untransform;
 
+pub use blender::{FormBlender, FormLayout};
 pub use error::{FormError, ShapeError};
 pub use form::Form;
 pub use loop_subdivision::{
@@ -34,6 +38,7 @@ pub use loop_subdivision::{
 pub use normals::{NormalWeighting, vertex_normals, vertex_normals_into, vertex_normals_planes};
 pub use rig::{Poser, Rig, RigScratch};
 pub use rig_error::RigError;
+pub use image_blend::ImageBlend;
 pub use shape::{Example, Shape};
 pub use skeleton::{Joint, LocalPose, Scaling, Shift, Skeleton, Turn};
 pub use skin::{Skin, WEIGHT_SUM_TOLERANCE};
