@@ -16,11 +16,11 @@ mod blender;
 mod error;
 mod face;
 mod form;
+mod image_blend;
 mod loop_subdivision;
 mod normals;
 mod rig;
 mod rig_error;
-mod image_blend;
 mod shape;
 mod skeleton;
 mod skin;
@@ -31,6 +31,7 @@ mod untransform;
 pub use blender::{FormBlender, FormLayout};
 pub use error::{FormError, ShapeError};
 pub use form::Form;
+pub use image_blend::ImageBlend;
 pub use loop_subdivision::{
     LoopSubdivision, MOST_TRIANGLES, SubdividedPositions, SubdividedTexture, SubdivisionError, SubdivisionOptions,
     SubdivisionScratch, subdivide_texture,
@@ -38,7 +39,6 @@ pub use loop_subdivision::{
 pub use normals::{NormalWeighting, vertex_normals, vertex_normals_into, vertex_normals_planes};
 pub use rig::{Poser, Rig, RigScratch};
 pub use rig_error::RigError;
-pub use image_blend::ImageBlend;
 pub use shape::{Example, Shape};
 pub use skeleton::{Joint, LocalPose, Scaling, Shift, Skeleton, Turn};
 pub use skin::{Skin, WEIGHT_SUM_TOLERANCE};

@@ -52,13 +52,24 @@ impl Bar {
         let topology = FormTopology::from_textured_triangles(6, triangles, places, on_texture).expect("a topology");
         let form = |bend: f64, high: f64| {
             let p = |x: f64, y: f64| Point3::new(x, y * high + bend * x * x, 0.1 * bend * x);
-            let positions = vec![p(0.0, 0.0), p(1.0, 0.0), p(2.0, 0.0), p(0.0, 1.0), p(1.0, 1.0), p(2.0, 1.0)];
+            let positions = vec![
+                p(0.0, 0.0),
+                p(1.0, 0.0),
+                p(2.0, 0.0),
+                p(0.0, 1.0),
+                p(1.0, 1.0),
+                p(2.0, 1.0),
+            ];
             Form::new(&topology, positions).expect("a form")
         };
         let forms = vec![form(0.0, 1.0), form(0.4, 1.0), form(0.0, 1.7)];
         let joints: Vec<Joint> = (0..6)
             .map(|k: usize| {
-                let mut joint = Joint::new(&format!("j{k}"), k.checked_sub(1), Point3::new(0.4 * k as f64, 0.0, 0.0));
+                let mut joint = Joint::new(
+                    &format!("j{k}"),
+                    k.checked_sub(1),
+                    Point3::new(0.4 * k as f64, 0.0, 0.0),
+                );
                 joint.turns.push(Turn {
                     adjective: 0,
                     axis: Point3::new(0.2, 0.0, 1.0),

@@ -9,7 +9,9 @@ const PLAIN: Look = Look {
 
 /// A square facing the eye, from -1 to 1, at a height, with its own texture places.
 fn square(z: f64) -> Vec<Point3> {
-    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| Point3::new(x, y, z)).to_vec()
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+        .map(|[x, y]| Point3::new(x, y, z))
+        .to_vec()
 }
 
 const SQUARE: [[usize; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
@@ -40,12 +42,24 @@ fn a_square_covers_its_pixels_wholly_and_leaves_a_margin() {
     let frame = drawn(&mesh(&SQUARE), &square(0.0), None, [100, 60]);
     let alpha = |x: usize, y: usize| frame.pixels[y * 100 + x][3];
     // 60 pixels less 6 in a hundred on each side.
-    assert_eq!((alpha(50, 30), alpha(50, 4), alpha(50, 55), alpha(25, 30), alpha(75, 30)), (255, 255, 255, 255, 255));
-    assert_eq!((alpha(50, 2), alpha(50, 57), alpha(22, 30), alpha(77, 30)), (0, 0, 0, 0));
+    assert_eq!(
+        (alpha(50, 30), alpha(50, 4), alpha(50, 55), alpha(25, 30), alpha(75, 30)),
+        (255, 255, 255, 255, 255)
+    );
+    assert_eq!(
+        (alpha(50, 2), alpha(50, 57), alpha(22, 30), alpha(77, 30)),
+        (0, 0, 0, 0)
+    );
     let opaque = frame.pixels.iter().filter(|p| p[3] == 255).count();
     assert!((51 * 51..=53 * 53).contains(&opaque), "{opaque}");
     // An even normal is lit evenly.
-    assert!(frame.pixels.iter().filter(|p| p[3] == 255).all(|p| *p == frame.pixels[30 * 100 + 50]));
+    assert!(
+        frame
+            .pixels
+            .iter()
+            .filter(|p| p[3] == 255)
+            .all(|p| *p == frame.pixels[30 * 100 + 50])
+    );
 }
 
 #[test]
@@ -63,7 +77,10 @@ fn what_is_nearer_hides_what_is_farther_in_any_order() {
 
 /// From -1..1 to 0..40, y down.
 fn raster_places(positions: &[Point3]) -> Vec<Point3> {
-    positions.iter().map(|p| Point3::new(20.0 + 20.0 * p.x, 20.0 - 20.0 * p.y, p.z)).collect()
+    positions
+        .iter()
+        .map(|p| Point3::new(20.0 + 20.0 * p.x, 20.0 - 20.0 * p.y, p.z))
+        .collect()
 }
 
 #[test]
@@ -155,7 +172,12 @@ fn a_sheet_needs_a_form_for_each_cell_and_shows_its_kinds() {
     assert_eq!((frame.width, frame.height), (700, 640));
     // Opaque, and the first form is darker than the last.
     assert!(frame.pixels.iter().all(|p| p[3] == 255));
-    let brightness = |x: usize, y: usize| frame.pixels[y * 700 + x][..3].iter().map(|c| u32::from(*c)).sum::<u32>();
+    let brightness = |x: usize, y: usize| {
+        frame.pixels[y * 700 + x][..3]
+            .iter()
+            .map(|c| u32::from(*c))
+            .sum::<u32>()
+    };
     let (low, high) = ((240, 430), (540, 200));
     assert!(brightness(low.0, low.1) + 60 < brightness(high.0, high.1));
     sheet.cells.pop();
