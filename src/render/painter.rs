@@ -33,6 +33,8 @@ use crate::pose::Mapping;
 const FAINTEST_WEIGHT: f64 = 1e-3;
 /// Rows of pixels painted at a time. Enough that few triangles are begun twice, few enough to share them out evenly.
 const BAND_ROWS: usize = 32;
+/// Columns painted at a time, of a band. The texels that a row of a few textures needs, and the row below, stay near.
+const STRIP_SAMPLES: usize = 512;
 /// A pixel whose covered area differs by less than this from all or nothing is wholly inside or outside: the difference
 /// is rounding, or less than half a step.
 const LEAST_AREA: f32 = 1.0 / 512.0;
@@ -412,7 +414,9 @@ impl Scene<'_> {
             }
             spans.push((span, maps.len() - self.shown.len()));
         });
-        spans.sort_unstable_by_key(|(span, _)| (span.row, span.start, span.triangle));
+        // Spans come triangle by triangle: those at one place stay in that order.
+        let order = |span: &Span| [span.start / STRIP_SAMPLES, span.row, span.start];
+        spans.sort_by_key(|(span, _)| order(span).iter().fold(0, |key, part| key << 20 | *part as u64));
         let mut walks: Vec<Walk> = Vec::with_capacity(self.shown.len());
         for (span, map) in spans {
             let start = Point::new(span.start as f64 + 0.5, span.row as f64 + 0.5);
