@@ -112,7 +112,7 @@ impl Shape {
         form.map_err(|_| ShapeError::Weights(crate::weights::WeightError::NotFinite { at: at.to_vec() }))
     }
 
-    /// The sum of the forms times `weights` (#examples), into `positions` (#vertices). See `FormBlender`
+    /// The sum of the forms times `weights` (#examples), into `positions` (#vertices). See [`FormBlender`](super::FormBlender)
     /// for the fast way.
     ///
     /// # Errors
@@ -198,3 +198,6 @@ pub(super) fn check_length(what: &'static str, expected: usize, found: usize) ->
         Err(ShapeError::WrongLength { what, expected, found })
     }
 }
+
+#[cfg(test)]
+mod tests;
