@@ -110,20 +110,7 @@ fn explained(folder: &Path) -> Drawn {
         height,
         pixels: rows.flat_map(|row| row[..width].iter().copied()).collect(),
     };
-    few_colours(&folder.join("show.png"), &frame)
-}
-
-/// A large picture of lines and flat colours, in 256 of them: a quarter of the bytes.
-fn few_colours(path: &Path, frame: &Frame) -> Drawn {
-    let palette = Palette::for_frames(std::slice::from_ref(frame));
-    let mut file = PendingFile::create(path)?;
-    let mut encoder = png::Encoder::new(&mut file, frame.width as u32, frame.height as u32);
-    encoder.set_color(png::ColorType::Indexed);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::High);
-    encoder.set_palette(palette.bytes());
-    encoder.write_header()?.write_image_data(&palette.indices(frame))?;
-    Ok(file.commit()?)
+    blending::save_with_palette(&frame, &folder.join("show.png"))
 }
 
 /// From one face to another: above cross-faded as pixels, below as curves.

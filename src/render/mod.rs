@@ -6,6 +6,8 @@
 //! edge ([`Texture`]), and the one edge of the frame is drawn with the exact area that it covers of each pixel
 //! ([`coverage`]).
 
+mod affine_map;
+mod band;
 mod camera;
 mod colour_blend;
 pub mod coverage;

@@ -5,10 +5,10 @@
 //! - [`FormTopology`] is what all forms share, [`Form`] where one has its vertices.
 //! - [`Shape`] is the forms with their places, open to editing: examples are moved, inserted, removed, and pseudo-examples
 //!   bend the space (SBE 4).
+//! - [`FormBlender`] blends the forms at run time, in single precision; [`ImageBlend`] their textures.
 //! - [`Skeleton`] moves joints with the adjectives, [`Skin`] says what follows them; [`Rig`] takes examples to the rest
 //!   position and [`Poser`] the blend of them to its pose (SBE 5).
 //! - [`LoopSubdivision`] makes a smooth surface with normals of a form (SBE 6.1); [`vertex_normals`] are those of its triangles.
-//! - [`FormBlender`] blends the forms at run time, in single precision; [`ImageBlend`] their textures.
 //!
 //! A place of the space is one value an adjective, in the order in which the adjectives are given.
 
