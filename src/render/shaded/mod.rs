@@ -53,7 +53,7 @@ pub struct ShadedForm<'a> {
 }
 
 /// Samples along each side of a pixel.
-pub const SAMPLES: usize = 3;
+pub const SAMPLES: usize = 4;
 
 /// Draws a form through a window of the view, `size` columns and rows large, on a clear background.
 ///

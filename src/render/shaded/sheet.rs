@@ -44,10 +44,10 @@ impl CellKind {
     #[must_use]
     pub fn look(self) -> Look {
         let (colour, surface) = match self {
-            Self::Example => ([158, 84, 58], Surface::Even),
-            Self::PseudoExample => ([190, 128, 98], Surface::Grainy),
+            Self::Example => ([170, 92, 64], Surface::Even),
+            Self::PseudoExample => ([194, 130, 100], Surface::Grainy),
             Self::Between => ([214, 170, 146], Surface::Even),
-            Self::Beyond => ([222, 208, 198], Surface::Even),
+            Self::Beyond => ([206, 192, 182], Surface::Even),
         };
         Look { colour, surface }
     }
@@ -160,7 +160,7 @@ impl Sheet<'_> {
             }
             canvas.paste(picture, [low.x as usize, low.y as usize]);
             let middle = Point::new(0.5 * (low.x + high.x), high.y - 0.5 * CAPTION_PX - 1.0);
-            let caption = fitting(cell.caption, high.x - low.x - 16.0, CAPTION_TEXT_PX);
+            let caption = fitting(&cell.caption.replace('_', " "), high.x - low.x - 16.0, CAPTION_TEXT_PX);
             canvas.words_around(&caption, middle, CAPTION_TEXT_PX, ink());
         }
         Ok(canvas.into_frame())
