@@ -14,6 +14,7 @@ mod output;
 mod progress;
 mod reach;
 mod render;
+mod shape;
 mod show;
 mod stage_table;
 mod triangulate;
@@ -55,6 +56,7 @@ enum Verb {
     Reach(reach::Arguments),
     Check(check::Arguments),
     Show(show::Arguments),
+    Shape(shape::Arguments),
 }
 
 /// Why a verb did not do its work.
@@ -110,6 +112,7 @@ pub(crate) fn run() -> ExitCode {
         Verb::Reach(verb) => reach::run(&verb),
         Verb::Check(verb) => check::run(&verb),
         Verb::Show(verb) => show::run(&verb, verbosity),
+        Verb::Shape(verb) => shape::run(&verb, verbosity),
     };
     let (code, message) = match outcome {
         Ok(()) => return ExitCode::SUCCESS,

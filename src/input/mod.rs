@@ -26,5 +26,5 @@ pub use obj::{ObjError, ObjForm, ObjProblem, open_obj, read_obj};
 pub use path::{
     Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke, Subpath,
 };
-pub use picture::Picture;
+pub use picture::{Picture, read_picture};
 pub use svg::{Extent, SvgOptions, open_svg, read_svg};

@@ -22,6 +22,7 @@ mod puppet_texture;
 pub mod raster;
 mod reached;
 mod sampler;
+pub mod shaded;
 mod silhouette;
 mod texture;
 
