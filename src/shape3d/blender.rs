@@ -6,6 +6,8 @@
 //! caller. Each form is one row of numbers: all x, then all y, then all z, or vertex by vertex, as the buffer shall be
 //! ([`FormLayout`]). A sum is built in blocks of eight registers, to which every form adds its part, so that each number of a
 //! form is read once and each of the result written once: what remains is the bandwidth of the cache that the forms lie in.
+//! Rows begin at different places of a page of memory: were they all to begin at the same, as large allocations do, the same few
+//! lines of the first cache would have to hold all of them, and a third of the speed would be gone.
 //!
 //! Weights of exactly 0 cost nothing: their forms are not read. Nothing is allocated. A product is never fused with the
 //! addition after it, and forms are added in their order, so the result is the same on every machine.
@@ -22,6 +24,13 @@ const REGISTERS: usize = 8;
 
 /// Rows are a multiple of this many numbers long: a block of the widest registers there are.
 const PADDING: usize = 16 * REGISTERS;
+
+/// Numbers in a page of memory, and in a line of a cache.
+const PAGE: usize = 4096 / size_of::<f32>();
+const LINE: usize = 64 / size_of::<f32>();
+
+/// Lines from the place where a row begins in its page to where the next one does: blocks take four, and 64 is a page.
+const STRIDE: usize = 5;
 
 /// Forms that are added in one go; more take another.
 const TOGETHER: usize = 32;
@@ -64,8 +73,15 @@ pub enum FormLayout {
 pub struct FormBlender {
     layout: FormLayout,
     vertex_count: usize,
-    /// One a form, each filled up with zeros to a whole number of [`PADDING`].
-    rows: Vec<Vec<f32>>,
+    rows: Vec<Row>,
+}
+
+/// A form's numbers, filled up with zeros to a whole number of [`PADDING`].
+#[derive(Debug, Clone)]
+struct Row {
+    numbers: Vec<f32>,
+    /// How many numbers come before the first one.
+    begin: usize,
 }
 
 impl FormBlender {
@@ -77,7 +93,7 @@ impl FormBlender {
         Self {
             layout,
             vertex_count,
-            rows: forms.map(|form| row_of(form, layout)).collect(),
+            rows: forms.enumerate().map(|(k, form)| Row::of(form, layout, k)).collect(),
         }
     }
 
@@ -117,7 +133,7 @@ impl FormBlender {
             for (weight, row) in weights.iter().zip(rows) {
                 let weight = (*weight).into() as f32;
                 if weight != 0.0 {
-                    terms[count] = (weight, row);
+                    terms[count] = (weight, row.numbers());
                     count += 1;
                 }
             }
@@ -169,10 +185,10 @@ impl FormBlender {
         }
     }
 
-    fn row(&self, example: usize, form: &Form) -> Result<Vec<f32>, ShapeError> {
+    fn row(&self, example: usize, form: &Form) -> Result<Row, ShapeError> {
         let (expected, found) = (self.vertex_count, form.positions().len());
         if expected == found {
-            Ok(row_of(form, self.layout))
+            Ok(Row::of(form, self.layout, example))
         } else {
             let problem = FormError::OtherVertexCount { expected, found };
             Err(ShapeError::Form { example, problem })
@@ -180,15 +196,29 @@ impl FormBlender {
     }
 }
 
-fn row_of(form: &Form, layout: FormLayout) -> Vec<f32> {
-    let positions = form.positions();
-    let mut row: Vec<f32> = Vec::with_capacity((3 * positions.len()).next_multiple_of(PADDING));
-    match layout {
-        FormLayout::Planar => (0..3).for_each(|k| row.extend(positions.iter().map(|p| p[k] as f32))),
-        FormLayout::Interleaved => row.extend(positions.iter().flat_map(|p| [p.x as f32, p.y as f32, p.z as f32])),
+impl Row {
+    /// The row of the form that is number `k`.
+    fn of(form: &Form, layout: FormLayout, k: usize) -> Self {
+        let positions = form.positions();
+        let length = (3 * positions.len()).next_multiple_of(PADDING);
+        let mut numbers: Vec<f32> = Vec::with_capacity(PAGE + length);
+        // Speed alone depends on the address, not the result.
+        let first = numbers.as_ptr().addr() / size_of::<f32>() % PAGE;
+        let begin = (PAGE + k * STRIDE * LINE % PAGE - first) % PAGE;
+        numbers.resize(begin, 0.0);
+        match layout {
+            FormLayout::Planar => (0..3).for_each(|k| numbers.extend(positions.iter().map(|p| p[k] as f32))),
+            FormLayout::Interleaved => {
+                numbers.extend(positions.iter().flat_map(|p| [p.x as f32, p.y as f32, p.z as f32]));
+            }
+        }
+        numbers.resize(begin + length, 0.0);
+        Self { numbers, begin }
     }
-    row.resize(row.len().next_multiple_of(PADDING), 0.0);
-    row
+
+    fn numbers(&self) -> &[f32] {
+        &self.numbers[self.begin..]
+    }
 }
 
 /// What a sum begins with.
@@ -282,7 +312,7 @@ mod tests {
     fn naive(blender: &FormBlender, weights: &[f64]) -> Vec<f32> {
         let sum = |at: usize| {
             let terms = blender.rows.iter().zip(weights);
-            terms.fold(0.0_f32, |sum, (row, weight)| sum + *weight as f32 * row[at])
+            terms.fold(0.0_f32, |sum, (row, weight)| sum + *weight as f32 * row.numbers()[at])
         };
         (0..blender.value_count()).map(sum).collect()
     }
@@ -333,12 +363,12 @@ mod tests {
     fn forms_are_edited_without_touching_others_and_mistakes_change_nothing() {
         let shape = shape(3, 20);
         let mut blender = FormBlender::new(&shape, FormLayout::Planar);
-        let kept = blender.rows[2].as_ptr();
+        let kept = blender.rows[2].numbers().as_ptr();
         blender.insert_form(&shape.forms()[0]).expect("a form");
         blender.replace_form(1, &shape.forms()[0]).expect("a form");
         blender.remove_form(0).expect("a form");
-        assert_eq!((blender.form_count(), blender.rows[1].as_ptr()), (3, kept));
-        assert_eq!(blender.rows[0], blender.rows[2]);
+        assert_eq!((blender.form_count(), blender.rows[1].numbers().as_ptr()), (3, kept));
+        assert_eq!(blender.rows[0].numbers(), blender.rows[2].numbers());
         let other = super::tests::shape(1, 19);
         assert!(blender.insert_form(&other.forms()[0]).is_err());
         assert!(blender.replace_form(3, &shape.forms()[0]).is_err() && blender.remove_form(3).is_err());
