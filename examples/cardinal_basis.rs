@@ -37,7 +37,7 @@ const BLACK: [u8; 3] = [20, 20, 20];
 /// Points of a curve.
 const STEPS: usize = 420;
 
-fn main() -> Result<(), Box<dyn Error>> {
+pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("usage: cardinal_basis FOLDER")?);
     std::fs::create_dir_all(&folder)?;
     let places = PLACES.map(|x| vec![x]);

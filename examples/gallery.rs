@@ -1,12 +1,14 @@
 //! Every picture of the README: `cargo run --release --example gallery -- data/pictures` draws them again.
 //!
-//! The stages of the pipeline and the comparisons of blends come from the examples of those names; the animations, the
+//! The stages of the pipeline, the comparisons of blends and the cardinal basis come from the examples of those names; the animations, the
 //! explained scene and the drawing carried as curves are drawn here.
 
-#![expect(clippy::duplicate_mod, reason = "both examples have the sheet that they draw on")]
+#![expect(clippy::duplicate_mod, reason = "the examples have the sheet that they draw on")]
 
 #[path = "blending.rs"]
 mod blending;
+#[path = "cardinal_basis.rs"]
+mod cardinal_basis;
 #[path = "stages.rs"]
 mod stages;
 
@@ -39,6 +41,7 @@ fn main() -> Drawn {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("usage: gallery FOLDER")?);
     stages::main()?;
     blending::main()?;
+    cardinal_basis::main()?;
     for (name, size, fps) in ANIMATIONS {
         animation(name, size, fps, &folder)?;
     }
