@@ -93,11 +93,11 @@ keys = [
 /// Models the forms and writes the scene.
 pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(folder)?;
-    let (sphere, triangles) = sphere()?;
+    let Sphere { points, triangles } = sphere()?;
     let faces: Vec<Vec<usize>> = triangles.iter().map(|triangle| triangle.to_vec()).collect();
     let mut scene = String::from("version = 1\nadjectives = [\"bend\", \"thickness\"]\nradial = \"b-spline\"\n");
     for blob in &BLOBS {
-        let positions: Vec<Point3> = sphere.iter().map(|&on_sphere| blob.place(on_sphere)).collect();
+        let positions: Vec<Point3> = points.iter().map(|&on_sphere| blob.place(on_sphere)).collect();
         let file = format!("{}.obj", blob.name);
         object::save(&folder.join(&file), &positions, &faces)?;
         scene += &format!(
@@ -143,8 +143,14 @@ impl Blob {
     }
 }
 
+/// Points of the unit sphere and the triangles between them.
+struct Sphere {
+    points: Vec<Point3>,
+    triangles: Vec<[usize; 3]>,
+}
+
 /// The icosahedron divided three times, on the unit sphere.
-fn sphere() -> Result<(Vec<Point3>, Vec<[usize; 3]>), Box<dyn Error>> {
+fn sphere() -> Result<Sphere, Box<dyn Error>> {
     let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
     let mut corners = Vec::new();
     for (one, other) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
@@ -178,5 +184,8 @@ fn sphere() -> Result<(Vec<Point3>, Vec<[usize; 3]>), Box<dyn Error>> {
         corners = finer.positions(&corners)?.iter().map(|at| at.normalize()).collect();
         triangles = finer.triangles().to_vec();
     }
-    Ok((corners, triangles))
+    Ok(Sphere {
+        points: corners,
+        triangles,
+    })
 }

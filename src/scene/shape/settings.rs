@@ -9,6 +9,64 @@ use crate::scene::{Animation, Radial};
 ///
 /// Every place has one coordinate an adjective, in their order; no two examples lie at one place, and no two textures;
 /// indices are in range; numbers are finite.
+///
+/// The file, with every key there is:
+///
+/// ```
+/// # let text = r#"
+/// version = 1
+/// adjectives = ["bend", "thickness"]
+/// radial = "b-spline"                              # or "thin-plate"
+///
+/// [[example]]
+/// name = "straight"
+/// form = "straight.obj"                            # relative to this file's folder, inside it
+/// at = { bend = 0.0, thickness = 0.0 }             # every adjective once
+/// texture = "skin.png"                             # a picture, where the form has texture coordinates
+/// texture_at = { bend = 0.0, thickness = 0.0 }     # the picture's own place; `at` otherwise
+///
+/// [[pseudo_example]]                               # the blend found at one place is wanted at another
+/// from = { bend = 0.8, thickness = 0.7 }
+/// at = { bend = 1.0, thickness = 1.0 }
+/// of = "geometry"                                  # or "texture", or "both"
+///
+/// [skeleton]                                       # examples are modelled in the pose that it has at their place
+/// weights = "weights.json"                         # {"joints": [names], "weights": [[[joint, weight], ...] a vertex]}
+/// [[skeleton.joint]]
+/// name = "upper"
+/// origin = [0.0, 0.0, 0.0]                         # in the rest position, where nothing is turned
+/// [[skeleton.joint]]
+/// name = "lower"
+/// parent = "upper"                                 # a joint above; without, it is a root
+/// origin = [2.0, 0.0, 0.0]
+/// turns = [                                        # in this order, by the right-hand rule
+///     { adjective = "bend", axis = [0.0, 0.0, 1.0], degrees = 90.0, offset = 0.0 },
+/// ]                                                # degrees for one unit, and offset where the adjective is 0
+///
+/// [subdivision]
+/// steps = 1                                        # 0, the default: none
+/// limit = true                                     # points on the limit surface
+///
+/// [sheet]                                          # the contact sheet; without from and to as far as the examples reach
+/// across = { adjective = "bend", from = 0.0, to = 1.0, columns = 5 }
+/// up = { adjective = "thickness", from = 0.0, to = 1.0, rows = 5 }
+/// fixed = {}                                       # values of the other adjectives; the examples' mean otherwise
+/// view = { yaw = 20.0, pitch = 15.0 }              # degrees
+///
+/// [animation]                                      # without keys all examples in turn
+/// fps = 24
+/// loop = false
+/// keys = [
+///     { time = 0.0, at = { bend = 0.0, thickness = 0.0 } },
+///     { time = 1.0, at = { bend = 1.0, thickness = 0.0 }, texture_at = { bend = 0.0, thickness = 0.0 } },
+/// ]
+/// # "#;
+/// # use inbetween::scene::ShapeScene;
+/// # use std::path::Path;
+/// let scene = ShapeScene::parse(text, Path::new("arm/scene.toml"))?;
+/// assert_eq!(scene.adjectives[scene.sheet.across.adjective], "bend");
+/// # Ok::<(), inbetween::scene::SceneError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShapeScene {
     /// The scene file.
