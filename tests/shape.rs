@@ -128,7 +128,9 @@ fn form_at(workshop: &Workshop, [bend, size]: [f64; 2]) -> String {
 
 #[test]
 fn every_example_is_met_and_quadrangles_stay() {
-    for more in [ANIMATION.to_owned(), format!("{SKELETON}{ANIMATION}")] {
+    let grows = "shifts = [ { adjective = \"size\", by = [0.3, 0.0, 0.1] } ]\n\
+        scalings = [ { adjective = \"size\", factors = [1.2, 1.5, 1.5] } ]\n";
+    for more in ["".to_owned(), SKELETON.to_owned(), format!("{SKELETON}{grows}")].map(|s| s + ANIMATION) {
         let workshop = workshop(|_| String::new(), &more);
         for (name, at) in PLACES {
             let (found, wanted) = (form_at(&workshop, at), text(&workshop, &format!("{name}.obj")));

@@ -26,6 +26,7 @@ pub use settings::{
     Scene, SceneLandmark, ScenePath, ScenePose, SoftAnchor, WeightRange,
 };
 pub use shape::{
-    AxisSettings, JointSettings, JointTurn, PseudoExample, ShapeExample, ShapeFile, ShapeProblem, ShapeScene,
-    SheetSettings, SkeletonSettings, SubdivisionSettings, Subject, SurfacePoints,
+    AxisSettings, JointScaling, JointSettings, JointShift, JointTurn, PseudoExample, ShapeExample, ShapeFile,
+    ShapeProblem, ShapeScene, SheetSettings, SkeletonSettings, SkinWeights, SubdivisionSettings, Subject,
+    SurfacePoints,
 };

@@ -5,7 +5,7 @@ use crate::input::{read_obj, read_picture};
 use crate::math::Point3;
 use crate::render::Frame;
 use crate::scene::{JointSettings, ShapeScene, SkeletonSettings};
-use crate::shape3d::{FormTopology, Joint, Rig, RigError, Skeleton, Skin, Turn};
+use crate::shape3d::{FormTopology, Joint, Rig, RigError, Scaling, Shift, Skeleton, Skin, Turn};
 
 /// The forms' topology and the examples' positions, #examples x #vertices.
 pub(super) fn forms(scene: &ShapeScene) -> Result<(FormTopology, Vec<Vec<Point3>>), ShapeModelError> {
@@ -24,11 +24,10 @@ pub(super) fn forms(scene: &ShapeScene) -> Result<(FormTopology, Vec<Vec<Point3>
         forms.push(read.form.into_positions());
     }
     let topology = shared.ok_or(crate::weights::WeightError::NoPose)?;
-    if let Some(texture) = scene.examples.iter().find_map(|example| example.texture.as_ref()) {
-        if !topology.has_texture() {
-            let reason = "the forms have no texture coordinates to show it by; export them with `vt` lines";
-            return Err(scene.unusable(texture, reason).into());
-        }
+    let mut textures = scene.examples.iter().filter_map(|example| example.texture.as_ref());
+    if let Some(texture) = textures.next().filter(|_| !topology.has_texture()) {
+        let reason = "the forms have no texture coordinates to show it by; export them with `vt` lines";
+        return Err(scene.unusable(texture, reason).into());
     }
     Ok((topology, forms))
 }
@@ -59,8 +58,18 @@ fn skeleton(settings: &SkeletonSettings, dimension: usize) -> Result<Skeleton, R
             degrees: turn.degrees,
             degrees_at_zero: turn.offset_degrees,
         });
+        let shifts = settings.shifts.iter().map(|shift| Shift {
+            adjective: shift.adjective,
+            by: shift.by,
+        });
+        let scalings = settings.scalings.iter().map(|scaling| Scaling {
+            adjective: scaling.adjective,
+            factors: scaling.factors,
+        });
         Joint {
             turns: turns.collect(),
+            shifts: shifts.collect(),
+            scalings: scalings.collect(),
             ..Joint::new(&settings.name, settings.parent, settings.origin)
         }
     };

@@ -29,6 +29,7 @@ pub use view::{View, Window};
 use super::Frame;
 use crate::math::Point3;
 use mip::Mip;
+use rayon::prelude::*;
 
 /// What all forms of a picture share: triangles, and where their corners lie in a texture.
 #[derive(Debug, Clone, Copy)]
@@ -54,6 +55,9 @@ pub struct ShadedForm<'a> {
 
 /// Samples along each side of a pixel.
 pub const SAMPLES: usize = 4;
+/// About how many pixels are drawn at a time, and at most how many rows: a few megabytes of samples.
+const BAND: usize = 1 << 16;
+const MOST_ROWS: usize = 64;
 
 /// Draws a form through a window of the view, `size` columns and rows large, on a clear background.
 ///
@@ -69,35 +73,44 @@ pub fn shade(mesh: &ShadedMesh<'_>, form: &ShadedForm<'_>, view: &View, window: 
     };
     let places: Vec<Point3> = form.positions.iter().map(place).collect();
     let normals: Vec<Point3> = form.normals.iter().map(|n| view.turned(*n)).collect();
-    let buffer = raster::nearest(mesh.triangles, &places, [width * SAMPLES, height * SAMPLES]);
     let texture = form
         .texture
         .filter(|_| mesh.texture_triangles.len() == mesh.triangles.len())
         .and_then(|texture| Mip::new(texture, mesh, &places));
-    let mut pixels = Vec::with_capacity(width * height);
-    for row in 0..height {
-        for column in 0..width {
+    // What one sample shows, as light.
+    let light_of = |hit: raster::Hit, x: usize, y: usize| {
+        let corners = mesh.triangles[hit.triangle];
+        let normal = mixed(corners.map(|v| normals.get(v).copied().unwrap_or_default()), hit.shares);
+        let albedo = match &texture {
+            Some(texture) => texture.light_at(mesh, hit.triangle, hit.shares),
+            None => look.albedo(),
+        };
+        look.light(albedo, normal, [x, y])
+    };
+    let rows_a_band = (BAND / width.max(1)).clamp(1, MOST_ROWS);
+    let bands = (0..height.div_ceil(rows_a_band)).into_par_iter();
+    let band = |band: usize| {
+        let rows = band * rows_a_band..((band + 1) * rows_a_band).min(height);
+        let sample_rows = rows.start * SAMPLES..rows.end * SAMPLES;
+        let buffer = raster::nearest(mesh.triangles, &places, width * SAMPLES, sample_rows);
+        let mut pixels = Vec::with_capacity(width * rows.len());
+        for (row, column) in rows.flat_map(|row| (0..width).map(move |column| (row, column))) {
             let mut sum = [0.0; 3];
             let mut covered = 0;
             for k in 0..SAMPLES * SAMPLES {
-                let x = column * SAMPLES + k % SAMPLES;
-                let y = row * SAMPLES + k / SAMPLES;
+                let (x, y) = (column * SAMPLES + k % SAMPLES, row * SAMPLES + k / SAMPLES);
                 let Some(hit) = buffer.at(x, y) else { continue };
-                let corners = mesh.triangles[hit.triangle];
-                let normal = mixed(corners.map(|v| normals.get(v).copied().unwrap_or_default()), hit.shares);
-                let albedo = match &texture {
-                    Some(texture) => texture.light_at(mesh, hit.triangle, hit.shares),
-                    None => look.albedo(),
-                };
-                let light = look.light(albedo, normal, [x, y]);
-                for (sum, light) in sum.iter_mut().zip(light) {
+                for (sum, light) in sum.iter_mut().zip(light_of(hit, x, y)) {
                     *sum += light;
                 }
                 covered += 1;
             }
             pixels.push(light::encoded(sum, covered, SAMPLES * SAMPLES));
         }
-    }
+        pixels
+    };
+    let pixels: Vec<Vec<[u8; 4]>> = bands.map(band).collect();
+    let pixels = pixels.concat();
     Frame { width, height, pixels }
 }
 

@@ -69,7 +69,7 @@ fn what_is_nearer_hides_what_is_farther_in_any_order() {
     let (near, far) = ([[4, 5, 6], [4, 6, 7]], SQUARE);
     let places = raster_places(&positions);
     for triangles in [[near, far].concat(), [far, near].concat()] {
-        let buffer = raster::nearest(&triangles, &places, [40, 40]);
+        let buffer = raster::nearest(&triangles, &places, 40, 0..40);
         let seen = |x: usize, y: usize| triangles[buffer.at(x, y).expect("covered").triangle][0];
         assert_eq!((seen(20, 20), seen(3, 3)), (4, 0));
     }
@@ -189,10 +189,12 @@ proptest! {
     #[test]
     fn shares_are_those_of_the_point(corners in prop::array::uniform3(prop::array::uniform3(0.0..12.0f64))) {
         let places = corners.map(Point3::from);
-        let buffer = raster::nearest(&[[0, 1, 2]], &places, [12, 12]);
+        let buffer = raster::nearest(&[[0, 1, 2]], &places, 12, 0..12);
+        let lower = raster::nearest(&[[0, 1, 2]], &places, 12, 5..12);
         let mut covered: f64 = 0.0;
         for y in 0..12 {
             for x in 0..12 {
+                prop_assert!(y < 5 || buffer.at(x, y) == lower.at(x, y));
                 let Some(hit) = buffer.at(x, y) else { continue };
                 covered += 1.0;
                 let point = mixed(places, hit.shares);

@@ -82,7 +82,7 @@ pub enum ShapeProblem {
         parent: String,
     },
     /// A place or direction that is none.
-    #[error("{key} must be three finite numbers{extra}, such as [0.0, 0.0, 1.0]")]
+    #[error("{key} must be three finite numbers{extra}, such as [0.5, 1.0, 1.0]")]
     BadVector {
         /// Which key.
         key: String,

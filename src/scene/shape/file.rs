@@ -61,6 +61,24 @@ pub(super) struct JointTable {
     pub(super) origin: Spanned<Vec<f64>>,
     #[serde(default)]
     pub(super) turns: Vec<TurnTable>,
+    #[serde(default)]
+    pub(super) shifts: Vec<ShiftTable>,
+    #[serde(default)]
+    pub(super) scalings: Vec<ScalingTable>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ShiftTable {
+    pub(super) adjective: Spanned<String>,
+    pub(super) by: Spanned<Vec<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ScalingTable {
+    pub(super) adjective: Spanned<String>,
+    pub(super) factors: Spanned<Vec<f64>>,
 }
 
 #[derive(Debug, Deserialize)]

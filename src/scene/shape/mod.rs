@@ -18,6 +18,7 @@ mod tests;
 
 pub use error::ShapeProblem;
 pub use settings::{
-    AxisSettings, JointSettings, JointTurn, PseudoExample, ShapeExample, ShapeFile, ShapeScene, SheetSettings,
-    SkeletonSettings, SubdivisionSettings, Subject, SurfacePoints,
+    AxisSettings, JointScaling, JointSettings, JointShift, JointTurn, PseudoExample, ShapeExample, ShapeFile,
+    ShapeScene, SheetSettings, SkeletonSettings, SubdivisionSettings, Subject, SurfacePoints,
 };
+pub use source::SkinWeights;

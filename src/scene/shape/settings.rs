@@ -42,6 +42,8 @@ use crate::scene::{Animation, Radial};
 /// turns = [                                        # in this order, by the right-hand rule
 ///     { adjective = "bend", axis = [0.0, 0.0, 1.0], degrees = 90.0, offset = 0.0 },
 /// ]                                                # degrees for one unit, and offset where the adjective is 0
+/// shifts = [ { adjective = "thickness", by = [0.1, 0.0, 0.0] } ]           # for one unit
+/// scalings = [ { adjective = "thickness", factors = [1.0, 1.1, 1.1] } ]    # to the power of the adjective
 ///
 /// [subdivision]
 /// steps = 1                                        # 0, the default: none
@@ -174,6 +176,28 @@ pub struct JointSettings {
     pub origin: Point3,
     /// What turns it, in this order.
     pub turns: Vec<JointTurn>,
+    /// What shifts it; shifts add up.
+    pub shifts: Vec<JointShift>,
+    /// What scales it about its origin, before it is turned; factors multiply.
+    pub scalings: Vec<JointScaling>,
+}
+
+/// How an adjective shifts a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointShift {
+    /// The adjective.
+    pub adjective: usize,
+    /// By how much for one unit of the adjective.
+    pub by: Point3,
+}
+
+/// How an adjective scales a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointScaling {
+    /// The adjective.
+    pub adjective: usize,
+    /// The factors along the axes for one unit of the adjective, all positive; their squares for two.
+    pub factors: Point3,
 }
 
 /// How an adjective turns a joint.

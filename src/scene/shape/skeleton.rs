@@ -4,10 +4,13 @@ use toml::Spanned;
 
 use super::error::ShapeProblem;
 use super::file::{JointTable, SkeletonTable, TurnTable};
-use super::settings::{JointSettings, JointTurn, SkeletonSettings};
+use super::settings::{JointScaling, JointSettings, JointShift, JointTurn, SkeletonSettings};
 use crate::math::Point3;
 use crate::scene::SceneProblem;
 use crate::scene::convert::{Checked, Reader};
+
+/// What factors must be.
+const POSITIVE: &str = " above 0";
 
 impl Reader<'_> {
     pub(super) fn skeleton(&self, table: &SkeletonTable, adjectives: &[String]) -> Checked<SkeletonSettings> {
@@ -51,11 +54,37 @@ impl Reader<'_> {
         let turns = (table.turns.iter())
             .map(|turn| self.turn(turn, &name, adjectives))
             .collect::<Checked<_>>()?;
+        let shifts = (table.shifts.iter())
+            .map(|shift| {
+                let key = |what: &str| format!("`{what}` of a shift of joint '{name}'");
+                Ok(JointShift {
+                    adjective: self.adjective(&shift.adjective, &key("adjective"), adjectives)?,
+                    by: self.vector(&shift.by, &key("by"), "")?,
+                })
+            })
+            .collect::<Checked<_>>()?;
+        let scalings = (table.scalings.iter())
+            .map(|scaling| {
+                let key = |what: &str| format!("`{what}` of a scaling of joint '{name}'");
+                let factors = self.vector(&scaling.factors, &key("factors"), POSITIVE)?;
+                if factors.iter().any(|factor| *factor <= 0.0) {
+                    let key = key("factors");
+                    let problem = ShapeProblem::BadVector { key, extra: POSITIVE };
+                    return Err(self.fail(scaling.factors.span().start, problem.into()));
+                }
+                Ok(JointScaling {
+                    adjective: self.adjective(&scaling.adjective, &key("adjective"), adjectives)?,
+                    factors,
+                })
+            })
+            .collect::<Checked<_>>()?;
         Ok(JointSettings {
             name,
             parent,
             origin,
             turns,
+            shifts,
+            scalings,
         })
     }
 

@@ -8,6 +8,9 @@ use super::error::ShapeProblem;
 use super::settings::{ShapeFile, ShapeScene};
 use crate::scene::{SceneError, SceneProblem};
 
+/// The joints that each vertex follows and how much, #vertices lists of joints with their weights.
+pub type SkinWeights = Vec<Vec<(usize, f64)>>;
+
 /// The vertices' weights as they are written.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -79,12 +82,12 @@ impl ShapeScene {
         self.failed(file, problem)
     }
 
-    /// The joints that each vertex follows and how much, #vertices lists of joints of the scene with their weights; `None` without a
-    /// skeleton. What the weights sum to is not looked at here.
+    /// The joints of the scene that each vertex follows, and how much; `None` without a skeleton. What the weights sum to is not
+    /// looked at here.
     ///
     /// # Errors
     /// [`SceneError`] if the file cannot be read, is no such file, or names joints that the scene does not have.
-    pub fn skin_weights(&self) -> Result<Option<Vec<Vec<(usize, f64)>>>, SceneError> {
+    pub fn skin_weights(&self) -> Result<Option<SkinWeights>, SceneError> {
         let Some(skeleton) = &self.skeleton else {
             return Ok(None);
         };

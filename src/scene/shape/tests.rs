@@ -82,6 +82,8 @@ name = "forearm"
 parent = "upper"
 origin = [1.0, 0.0, 0.0]
 turns = [ { adjective = "elbow", axis = [0.0, 3.0, 4.0], degrees = 90.0, offset = 5.0 } ]
+shifts = [ { adjective = "age", by = [0.0, -1.0, 0.5] } ]
+scalings = [ { adjective = "gender", factors = [1.0, 1.5, 2.0] } ]
 [subdivision]
 steps = 2
 limit = false
@@ -193,6 +195,11 @@ fn what_is_wrong_is_told_with_its_line() {
             "[skeleton]\nweights = \"w.json\"\n[[skeleton.joint]]\nname = \"a\"\norigin = [0.0, 0.0, 0.0]\nturns = [ { adjective = \"bend\", axis = [0.0, 0.0, 0.0], degrees = 1.0 } ]\n",
             16,
             "not all 0",
+        ),
+        (
+            "[skeleton]\nweights = \"w.json\"\n[[skeleton.joint]]\nname = \"a\"\norigin = [0.0, 0.0, 0.0]\nscalings = [ { adjective = \"bend\", factors = [1.0, 0.0, 1.0] } ]\n",
+            16,
+            "above 0",
         ),
         (
             "[animation]\nkeys = [ { time = 0.0, at = { bend = 0.0, thickness = 0.0 } },\n{ time = 0.0, at = { bend = 0.0, thickness = 0.0 } } ]\n",
