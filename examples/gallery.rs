@@ -16,10 +16,10 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use inbetween::export::{Backdrop, ColourCount, GifWriter, Palette, PendingFile, Repetition, png_bytes};
-use inbetween::pipeline::{Character, map_drawings, read_drawings, weight_provider};
+use inbetween::pipeline::{Character, ShapeModel, map_drawings, read_drawings, weight_provider};
 use inbetween::render::Frame;
 use inbetween::render::diagram::{self, Diagram, DiagramPose, Sections};
-use inbetween::scene::{ArtChoice, Background, Scene};
+use inbetween::scene::{ArtChoice, Background, Scene, ShapeScene};
 use stages::common::Sheet;
 
 type Drawn = Result<(), Box<dyn Error>>;
@@ -46,15 +46,25 @@ fn main() -> Drawn {
         animation(name, size, fps, &folder)?;
     }
     explained(&folder)?;
-    curves(&folder)
+    curves(&folder)?;
+    shape_sheet("bendable", [760, 1262], &folder)?;
+    shape_sheet("arm", [1200, 960], &folder)
+}
+
+fn data(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    folder.join(name).join("scene.toml")
 }
 
 fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("data")
-        .join(name)
-        .join("scene.toml");
-    Ok(Scene::open(&file)?)
+    Ok(Scene::open(&data(name))?)
+}
+
+/// The space of a shape in space.
+fn shape_sheet(name: &str, size: [u32; 2], folder: &Path) -> Drawn {
+    let scene = ShapeScene::open(&data(&format!("shapes/{name}")))?;
+    let sheet = ShapeModel::open(&scene)?.sheet(&scene, Some(size))?;
+    blending::save_with_palette(&sheet, &folder.join(format!("shape-{name}.png")))
 }
 
 /// A scene as a GIF that plays for ever.
