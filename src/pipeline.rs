@@ -28,6 +28,7 @@ mod report;
 mod sides;
 mod triangulation;
 mod weighting;
+mod workbench;
 
 pub use character::Character;
 pub use deformed::DeformedPose;
@@ -41,3 +42,4 @@ pub use reach::{Reach, ReachOptions, ShapePoint, reach, reach_landmarks};
 pub use report::{MappingReport, Stage};
 pub use triangulation::{LandmarkLabel, Refinement, triangulate_polygons};
 pub use weighting::{checked_weights, weight_provider};
+pub use workbench::{DrawingFiles, Workbench};

@@ -1,0 +1,137 @@
+//! Connections and routes: one thread a connection, nothing shared but the [`Session`].
+
+use std::io::BufReader;
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+
+use anyhow::Context as _;
+
+use super::http::{NoRequest, Request, Response};
+use super::problem::Refusal;
+use super::security::Gate;
+use super::session::Session;
+use super::{frames, page, pictures, scene_json};
+
+/// Connections at a time; a browser opens six.
+const MOST_CONNECTIONS: usize = 64;
+/// How long the state is waited for.
+const LONGEST_WAIT: Duration = Duration::from_secs(25);
+
+/// A server that listens, but does not answer yet.
+pub(crate) struct Server {
+    listener: TcpListener,
+    gate: Gate,
+}
+
+impl Server {
+    /// Listens on the loopback address, at `port` or a free one.
+    pub(crate) fn bind(port: Option<u16>) -> anyhow::Result<Self> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port.unwrap_or(0))).with_context(|| match port {
+            Some(port) => format!("cannot listen at port {port}; take another, or leave --port out"),
+            None => "cannot listen on the loopback address".to_owned(),
+        })?;
+        let gate = Gate::new(listener.local_addr()?.port())?;
+        Ok(Self { listener, gate })
+    }
+
+    /// The page's address.
+    pub(crate) fn address(&self) -> String {
+        self.gate.address()
+    }
+
+    /// Answers until the process ends.
+    pub(crate) fn run(self, session: &Arc<Session>) {
+        let open = Arc::new(AtomicUsize::new(0));
+        for stream in self.listener.incoming() {
+            // One that broke already.
+            let Ok(stream) = stream else { continue };
+            if open.load(Ordering::Relaxed) >= MOST_CONNECTIONS {
+                continue;
+            }
+            open.fetch_add(1, Ordering::Relaxed);
+            let (session, gate, counted) = (Arc::clone(session), self.gate.clone(), Arc::clone(&open));
+            let thread = std::thread::Builder::new()
+                .name("connection".to_owned())
+                .spawn(move || {
+                    serve(&stream, &gate, &session);
+                    counted.fetch_sub(1, Ordering::Relaxed);
+                });
+            if thread.is_err() {
+                open.fetch_sub(1, Ordering::Relaxed);
+            }
+        }
+    }
+}
+
+/// Answers the requests of one connection.
+fn serve(stream: &TcpStream, gate: &Gate, session: &Session) {
+    // Without it small answers may wait for 40 ms.
+    let _ = stream.set_nodelay(true);
+    let mut from = BufReader::new(stream);
+    let mut to = stream;
+    loop {
+        let (response, keeps) = match Request::read(&mut from) {
+            Ok(request) => {
+                // A bug in one answer does not end the connection.
+                let answer = || answer(&request, gate, session);
+                let response = std::panic::catch_unwind(std::panic::AssertUnwindSafe(answer))
+                    .unwrap_or_else(|_| Refusal::failed("this request failed inside inbetween").response());
+                (response, request.keeps_connection())
+            }
+            Err(NoRequest::Bad(status)) => (Response::text(status, "this request is not understood\n"), false),
+            Err(NoRequest::Closed) => return,
+        };
+        if response.write(&mut to, keeps).is_err() || !keeps {
+            return;
+        }
+    }
+}
+
+fn answer(request: &Request, gate: &Gate, session: &Session) -> Response {
+    let Some(path) = gate.admitted(request) else {
+        return Response::text(403, "open the address that inbetween printed\n");
+    };
+    let Some(route) = path.strip_prefix("api/") else {
+        return match (page::file(path), request.method.as_str()) {
+            (Some((content_type, bytes)), "GET") => Response::new(content_type, bytes),
+            (Some(_), _) => Response::text(405, "GET this\n"),
+            (None, _) => Response::text(404, "there is no such page\n"),
+        };
+    };
+    let is_json = || {
+        let content_type = request.header("content-type").unwrap_or_default();
+        content_type.split(';').next().map(str::trim) == Some("application/json")
+    };
+    match request.method.as_str() {
+        "GET" => {}
+        "POST" if !is_json() => return Response::text(415, "POST application/json\n"),
+        "POST" => {}
+        _ => return Response::text(405, "GET or POST\n"),
+    }
+    api(route, request, session).unwrap_or_else(|refusal| refusal.response())
+}
+
+fn api(route: &str, request: &Request, session: &Session) -> Result<Response, Refusal> {
+    match (request.method.as_str(), route) {
+        ("GET", "state") => {
+            let state = match request.value("after") {
+                None => session.state_json(),
+                Some(after) => {
+                    let after = after.parse().map_err(|_| Refusal::bad("`after` is no number"))?;
+                    session.state_after(after, LONGEST_WAIT)
+                }
+            };
+            Ok(Response::json(&state))
+        }
+        ("GET", "text") => Ok(Response::text(200, &session.text())),
+        ("GET", "scene") => Ok(Response::json(&scene_json::scene(session))),
+        ("GET", "frame") => frames::frame(request, session),
+        ("GET", "weights") => frames::weights(request, session),
+        ("GET", "puppet") => pictures::puppet(session),
+        ("GET", "mesh") => pictures::mesh(session),
+        ("GET", "texture") => pictures::texture(request, session),
+        _ => Ok(Response::text(404, "there is no such address\n")),
+    }
+}
