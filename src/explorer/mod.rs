@@ -236,7 +236,14 @@
 //!
 //! Everything but `api/state`, `api/scene`, `api/text`, `api/weights`, `api/frame`, `api/puppet`, `api/mesh`, `api/texture`.
 
+mod correspondences;
+mod document;
+mod edit;
+mod export;
 mod frames;
+mod gesture;
+mod grids;
+mod handles;
 mod http;
 mod model;
 mod page;
@@ -269,6 +276,10 @@ impl Explorer {
         std::thread::Builder::new()
             .name("worker".to_owned())
             .spawn(move || worker::run(&working))?;
+        let watched = Arc::clone(&session);
+        std::thread::Builder::new()
+            .name("watch".to_owned())
+            .spawn(move || worker::watch(&watched))?;
         Ok(Self { server, session })
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use inbetween::pipeline::{PipelineError, Workbench, weight_provider};
+use inbetween::pipeline::{EditableWeights, PipelineError, Workbench, weight_provider};
 use inbetween::scene::{Provider, Scene};
 use inbetween::texture::shared_texture_weights;
 use inbetween::weights::WeightProvider;
@@ -74,7 +74,8 @@ impl Shown {
         if let Some(bench) = &self.bench
             && wanted == scene.pose_space.provider
         {
-            return Ok(Arc::clone(bench.weights()));
+            let own: Arc<dyn WeightProvider> = Arc::<EditableWeights>::clone(bench.weights());
+            return Ok(own);
         }
         let own = &self.providers[usize::from(wanted == Provider::Rbf)];
         let made = || {
