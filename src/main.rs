@@ -1,6 +1,8 @@
 //! The command `inbetween`.
 
 mod cli;
+#[cfg(feature = "explorer")]
+mod explorer;
 
 use std::process::ExitCode;
 

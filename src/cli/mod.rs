@@ -5,6 +5,8 @@
 
 mod blend;
 mod check;
+#[cfg(feature = "explorer")]
+mod explore;
 mod frame;
 mod frames;
 mod layer;
@@ -56,6 +58,8 @@ enum Verb {
     Reach(reach::Arguments),
     Check(check::Arguments),
     Show(show::Arguments),
+    #[cfg(feature = "explorer")]
+    Explore(explore::Arguments),
     Shape(shape::Arguments),
 }
 
@@ -112,6 +116,8 @@ pub(crate) fn run() -> ExitCode {
         Verb::Reach(verb) => reach::run(&verb),
         Verb::Check(verb) => check::run(&verb),
         Verb::Show(verb) => show::run(&verb, verbosity),
+        #[cfg(feature = "explorer")]
+        Verb::Explore(verb) => explore::run(&verb, verbosity),
         Verb::Shape(verb) => shape::run(&verb, verbosity),
     };
     let (code, message) = match outcome {

@@ -57,9 +57,15 @@ impl Figure {
 
     /// The shapes for weights that sum to 1.
     pub(super) fn posed(&self, weights: &[f64]) -> Result<Posed, PipelineError> {
-        let shown = shared_texture_weights(weights, &self.originals, self.texture_sharpness)?;
+        self.posed_sharpened(weights, None)
+    }
+
+    /// The same with textures as sharp as is said here.
+    pub(super) fn posed_sharpened(&self, weights: &[f64], sharpness: Option<f64>) -> Result<Posed, PipelineError> {
+        let sharpness = sharpness.unwrap_or(self.texture_sharpness);
+        let shown = shared_texture_weights(weights, &self.originals, sharpness)?;
         let mut layers: Vec<PosedLayer> = (self.layers.iter())
-            .map(|shape| shape.posed(weights, &shown, self.texture_sharpness))
+            .map(|shape| shape.posed(weights, &shown, sharpness))
             .collect::<Result<_, _>>()?;
         // What a layer hangs on is put in its place first; a validated scene has no circle.
         let mut is_placed: Vec<bool> = self.layers.iter().map(|shape| shape.hangs_on().is_none()).collect();

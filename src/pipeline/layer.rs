@@ -73,7 +73,7 @@ impl Part<'_> {
         }
     }
 
-    fn refusal(&self, error: PipelineError) -> PipelineError {
+    pub(super) fn refusal(&self, error: PipelineError) -> PipelineError {
         match self.named {
             Some(name) => PipelineError::Layer {
                 layer: name.to_owned(),
@@ -87,12 +87,7 @@ impl Part<'_> {
     pub(super) fn shape(&self, mapping: Mapping, notes: &mut Vec<String>) -> Result<LayerShape, PipelineError> {
         let options = blend_options(self.scene, &mapping);
         let blend = RigidBlend::new(&mapping.poses, &options).map_err(|error| self.refusal(error.into()))?;
-        if blend.turns_are_ambiguous() {
-            notes.push(self.remark(
-                "some poses are turned by half a turn against one another, so either way round is as good; \
-                 set `turns` on a pose to choose",
-            ));
-        }
+        self.note_turns(&blend, notes);
         Ok(LayerShape {
             name: self.name.clone(),
             poses: self.poses.clone(),
@@ -103,6 +98,35 @@ impl Part<'_> {
             blend,
             tie: None,
         })
+    }
+
+    /// The layer's shape, not yet hung on another one, from `before`, which has the same mapping.
+    pub(super) fn shape_again(
+        &self,
+        before: &LayerShape,
+        notes: &mut Vec<String>,
+    ) -> Result<LayerShape, PipelineError> {
+        let mut shape = LayerShape {
+            tie: None,
+            ..before.clone()
+        };
+        let options = blend_options(self.scene, &shape.mapping);
+        if options != shape.options {
+            shape.blend =
+                RigidBlend::new(&shape.mapping.poses, &options).map_err(|error| self.refusal(error.into()))?;
+            shape.options = options;
+        }
+        self.note_turns(&shape.blend, notes);
+        Ok(shape)
+    }
+
+    fn note_turns(&self, blend: &RigidBlend, notes: &mut Vec<String>) {
+        if blend.turns_are_ambiguous() {
+            notes.push(self.remark(
+                "some poses are turned by half a turn against one another, so either way round is as good; \
+                 set `turns` on a pose to choose",
+            ));
+        }
     }
 }
 
@@ -148,7 +172,7 @@ fn shape_point(scene: &Scene, anchor: &LayerAnchor, shape: &LayerShape, poses: &
 }
 
 /// The shape of one layer, with everything that is computed once.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct LayerShape {
     name: String,
     poses: Vec<usize>,
@@ -162,7 +186,7 @@ pub struct LayerShape {
 }
 
 /// Where a layer hangs on another one: a point of both, in the poses of the layer that hangs.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Tie {
     to: usize,
     own: ShapePoint,

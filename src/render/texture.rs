@@ -90,6 +90,12 @@ impl Texture {
         texture
     }
 
+    /// Columns and rows of the finest picture.
+    #[must_use]
+    pub fn size(&self) -> [usize; 2] {
+        [self.levels[0].width(), self.levels[0].height()]
+    }
+
     /// The place in texels, from the corner of texel (0, 0), of a place in source units.
     #[must_use]
     pub fn to_texels(&self, p: Point) -> Point {

@@ -1,0 +1,213 @@
+//! Frames on the wire, and weights.
+
+use std::sync::Arc;
+
+use inbetween::blend::Stretch;
+use inbetween::math::{Point, predicate};
+use inbetween::pipeline::{Posed, Workbench, checked_weights};
+use inbetween::scene::Provider;
+use inbetween::weights::WeightProvider;
+use serde_json::json;
+
+use super::http::{Request, Response};
+use super::model::Shown;
+use super::problem::Refusal;
+use super::session::Session;
+
+/// Frames that one request may ask for.
+const MOST_FRAMES: usize = 256;
+
+/// Numbers separated by commas.
+pub(super) fn numbers(text: &str) -> Result<Vec<f64>, Refusal> {
+    let number = |word: &str| word.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+    text.split(',')
+        .map(number)
+        .collect::<Option<_>>()
+        .ok_or_else(|| Refusal::bad(format!("'{text}' is not a list of finite numbers, such as 0.5,0.5")))
+}
+
+/// The provider that a request names.
+pub(super) fn asked_provider(request: &Request) -> Result<Option<Provider>, Refusal> {
+    match request.value("provider") {
+        None | Some("") => Ok(None),
+        Some(name) => provider_named(name).map(Some),
+    }
+}
+
+pub(super) fn provider_named(name: &str) -> Result<Provider, Refusal> {
+    match name {
+        "biharmonic" => Ok(Provider::Biharmonic),
+        "rbf" => Ok(Provider::Rbf),
+        other => Err(Refusal::bad(format!(
+            "provider '{other}' is neither biharmonic nor rbf"
+        ))),
+    }
+}
+
+fn sharpness(request: &Request) -> Result<Option<f64>, Refusal> {
+    let Some(text) = request.value("sharpness") else {
+        return Ok(None);
+    };
+    match numbers(text)?.as_slice() {
+        [sharpness] if (0.0..=1.0).contains(sharpness) => Ok(Some(*sharpness)),
+        _ => Err(Refusal::bad("sharpness must be between 0 and 1")),
+    }
+}
+
+fn stretch(request: &Request) -> Result<Option<Stretch>, Refusal> {
+    Ok(match request.value("stretch") {
+        None | Some("") => None,
+        Some("linear") => Some(Stretch::Linear),
+        Some("limited") => Some(Stretch::Limited),
+        Some("log") => Some(Stretch::Log),
+        Some(other) => {
+            return Err(Refusal::bad(format!(
+                "stretch '{other}' is none of linear, limited, log"
+            )));
+        }
+    })
+}
+
+/// The weights of every place or list of weights of a request, in its order.
+fn asked_weights(request: &Request, shown: &Shown) -> Result<Vec<Vec<f64>>, Refusal> {
+    let provider = asked_provider(request)?;
+    let names = shown.framed_scene()?.names();
+    let mut all = Vec::new();
+    let mut known: Option<Arc<dyn WeightProvider>> = None;
+    for (name, value) in &request.query {
+        match name.as_str() {
+            "at" => {
+                let provider = match &known {
+                    Some(known) => known,
+                    None => known.insert(shown.provider(provider)?),
+                };
+                let mut weights = Vec::new();
+                provider.weights(&numbers(value)?, &mut weights).map_err(Refusal::bad)?;
+                all.push(weights);
+            }
+            "weights" => all.push(checked_weights(&numbers(value)?, &names).map_err(Refusal::bad)?),
+            _ => {}
+        }
+    }
+    match all.len() {
+        0 => Err(Refusal::bad("say where: at=X,Y or weights=W0,W1,...")),
+        1..=MOST_FRAMES => Ok(all),
+        _ => Err(Refusal::bad(format!("at most {MOST_FRAMES} frames at a time"))),
+    }
+}
+
+/// `GET api/weights`.
+pub(super) fn weights(request: &Request, session: &Session) -> Result<Response, Refusal> {
+    let shown = session.shown();
+    let sharpness = sharpness(request)?;
+    let mut answers = Vec::new();
+    for weights in asked_weights(request, &shown)? {
+        let seen = shown.texture_weights(&weights, sharpness)?;
+        answers.push(json!({"weights": weights, "texture_weights": seen}));
+    }
+    Ok(Response::json(&answers.into()))
+}
+
+/// `GET api/frame`.
+pub(super) fn frame(request: &Request, session: &Session) -> Result<Response, Refusal> {
+    let shown = session.shown();
+    let bench = &shown.stretched(stretch(request)?)?;
+    let sharpness = sharpness(request)?;
+    let with_silhouette = request.value("silhouette") == Some("1");
+    let mut bytes = Vec::new();
+    for weights in asked_weights(request, &shown)? {
+        let posed = bench.posed(&weights, sharpness)?;
+        let seen = shown.texture_weights(&weights, sharpness)?;
+        let start = bytes.len();
+        let mut block = Words(&mut bytes);
+        block.u32(0);
+        block.u32(shown.revisions.shape as usize);
+        block.u32(shown.revisions.weights as usize);
+        block.u32(weights.len());
+        block.u32(posed.layers.len());
+        block.u32(posed.flipped());
+        block.f32s(&weights);
+        block.f32s(&seen);
+        for layer in &posed.order {
+            block.u32(*layer);
+        }
+        write_layers(&mut block, bench, &posed, with_silhouette);
+        let length = (bytes.len() - start) as u32;
+        bytes[start..start + 4].copy_from_slice(&length.to_le_bytes());
+    }
+    Ok(Response::binary(bytes))
+}
+
+fn write_layers(block: &mut Words<'_>, bench: &Workbench, posed: &Posed, with_silhouette: bool) {
+    for (k, (layer, shape)) in posed.layers.iter().zip(bench.layers()).enumerate() {
+        let triangles = shape.mapping().poses.topology().triangles();
+        let texture_of = super::pictures::texture_of(bench, k);
+        let texture_count = bench.drawings(k).len();
+        let rings = if with_silhouette {
+            bench.silhouette(k, layer)
+        } else {
+            Vec::new()
+        };
+        block.u32(layer.positions.len());
+        block.u32(layer.weights.len());
+        block.u32(texture_count);
+        block.u32(triangles.len());
+        block.u32(rings.len());
+        block.f32(layer.opacity);
+        block.points(&layer.positions);
+        block.f32s(&layer.weights);
+        let mut seen = vec![0.0; texture_count];
+        for (texture, weight) in texture_of.iter().zip(&layer.texture_weights) {
+            seen[*texture] += weight;
+        }
+        block.f32s(&seen);
+        block.bits(triangles.iter().map(|corners| is_inverted(&layer.positions, *corners)));
+        for ring in &rings {
+            block.u32(ring.len());
+            block.points(ring);
+        }
+    }
+}
+
+/// Whether a triangle is turned over or has no area.
+pub(super) fn is_inverted(positions: &[Point], [a, b, c]: [usize; 3]) -> bool {
+    !predicate::is_positive(positions[a], positions[b], positions[c])
+}
+
+/// Little-endian numbers of four bytes.
+pub(super) struct Words<'a>(pub(super) &'a mut Vec<u8>);
+
+impl Words<'_> {
+    pub(super) fn u32(&mut self, number: usize) {
+        self.0
+            .extend_from_slice(&u32::try_from(number).unwrap_or(u32::MAX).to_le_bytes());
+    }
+
+    pub(super) fn f32(&mut self, number: f64) {
+        self.0.extend_from_slice(&(number as f32).to_le_bytes());
+    }
+
+    pub(super) fn f32s(&mut self, numbers: &[f64]) {
+        for number in numbers {
+            self.f32(*number);
+        }
+    }
+
+    pub(super) fn points(&mut self, points: &[Point]) {
+        self.0.reserve(8 * points.len());
+        for point in points {
+            self.f32(point.x);
+            self.f32(point.y);
+        }
+    }
+
+    fn bits(&mut self, bits: impl ExactSizeIterator<Item = bool>) {
+        let mut words = vec![0u32; bits.len().div_ceil(32)];
+        for (k, bit) in bits.enumerate() {
+            words[k / 32] |= u32::from(bit) << (k % 32);
+        }
+        for word in words {
+            self.0.extend_from_slice(&word.to_le_bytes());
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! Meshes and pictures of the drawings, for whoever draws frames.
+
+use inbetween::export::texture_png;
+use inbetween::math::Point;
+use inbetween::pipeline::Workbench;
+use inbetween::render::{PuppetTexture, Texture};
+use inbetween::scene::{Facing, Scene};
+use serde_json::{Value, json};
+
+use super::frames::Words;
+use super::http::{Request, Response};
+use super::problem::Refusal;
+use super::session::Session;
+
+/// How many texels a pixel of the animation's frames may have: pages are zoomed, and screens are finer than frames.
+const TEXELS_A_PIXEL: f64 = 2.0;
+
+/// A layer as a scene without layers.
+pub(super) fn layer_scene(scene: &Scene, layer: usize) -> &Scene {
+    scene.layers.get(layer).map_or(scene, |layer| &layer.scene)
+}
+
+/// A place on a pose of a layer, from the file's coordinates to drawing units or back: reflected where the pose is.
+pub(super) fn reflected(bench: &Workbench, layer: usize, pose: &str, place: Point) -> Point {
+    let scene = layer_scene(bench.scene(), layer);
+    let root = (scene.poses.iter().position(|own| own.name == pose)).and_then(|index| scene.drawing_of(index));
+    match root {
+        Some((root, source)) if source.facing == Facing::Mirrored => {
+            let drawing = scene.drawn_poses().iter().position(|drawn| *drawn == root);
+            drawing.map_or(place, |drawing| bench.as_used(layer, drawing, place))
+        }
+        _ => place,
+    }
+}
+
+/// The texture of each pose of a layer.
+pub(super) fn texture_of(bench: &Workbench, layer: usize) -> Vec<usize> {
+    let scene = layer_scene(bench.scene(), layer);
+    let drawn = scene.drawn_poses();
+    let shown = |pose: usize| {
+        let root = scene.drawing_of(pose).map(|(root, _)| root);
+        drawn.iter().position(|&pose| Some(pose) == root).unwrap_or(0)
+    };
+    (0..scene.poses.len()).map(shown).collect()
+}
+
+/// The layer that a request is about.
+pub(super) fn asked_layer(request: &Request, bench: &Workbench) -> Result<usize, Refusal> {
+    index(request, "layer", bench.layers().len())
+}
+
+pub(super) fn index(request: &Request, name: &str, count: usize) -> Result<usize, Refusal> {
+    let index = match request.value(name) {
+        None => Some(0),
+        Some(text) => text.parse().ok(),
+    };
+    index
+        .filter(|index| *index < count)
+        .ok_or_else(|| Refusal::bad(format!("`{name}` must be a number from 0 to {}", count.max(1) - 1)))
+}
+
+/// A picture with its place.
+pub(super) struct Placed {
+    pub(super) texture: PuppetTexture,
+    origin: Point,
+    scale: f64,
+}
+
+impl Placed {
+    pub(super) fn place(&self) -> Value {
+        json!({
+            "width": self.texture.width, "height": self.texture.height,
+            "origin": [self.origin.x, self.origin.y], "scale": self.scale,
+        })
+    }
+}
+
+/// Which picture of a drawing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Colours that reach beyond the edge, to be cut by the frame's outline.
+    Colour,
+    /// The drawing with its own edge.
+    Drawing,
+}
+
+/// The picture of a layer's drawing.
+pub(super) fn picture(bench: &Workbench, layer: usize, index: usize, kind: Kind) -> Placed {
+    let drawing = &bench.drawings(layer)[index];
+    let fineness = TEXELS_A_PIXEL * bench.camera().scale();
+    match kind {
+        Kind::Colour => {
+            let texture = Texture::new(&drawing.picture, &drawing.outline, fineness);
+            let [width, height] = texture.size();
+            let origin = texture.to_texels(Point::zeros());
+            let scale = texture.to_texels(Point::new(1.0, 0.0)).x - origin.x;
+            let straight = |i: usize| {
+                let (x, y) = ((i % width) as f32 + 0.5, (i / width) as f32 + 0.5);
+                let [r, g, b, a] = texture.sample(x, y);
+                let divided = |c: f32| (c * 255.0 / a.max(1.0)).round().min(255.0) as u8;
+                [divided(r), divided(g), divided(b), a.round() as u8]
+            };
+            Placed {
+                texture: PuppetTexture {
+                    name: String::new(),
+                    width,
+                    height,
+                    pixels: (0..width * height).map(straight).collect(),
+                    places: Vec::new(),
+                },
+                origin: Point::zeros() - origin / scale,
+                scale,
+            }
+        }
+        Kind::Drawing => {
+            let corners = outline_box(drawing.outline.outer().points());
+            let texture = PuppetTexture::new("", &drawing.picture, &drawing.outline, &corners, fineness);
+            // Where the picture's corner lies follows from where those of the outline's box do.
+            let scale = (texture.places[1].x - texture.places[0].x) / (corners[1].x - corners[0].x);
+            Placed {
+                origin: corners[0] - texture.places[0] / scale,
+                scale,
+                texture,
+            }
+        }
+    }
+}
+
+/// The lowest and the highest corner.
+fn outline_box(points: &[Point]) -> [Point; 2] {
+    let (low, high) = inbetween::math::point::bounding_box(points).unwrap_or_default();
+    [low, high]
+}
+
+/// `GET api/puppet`.
+pub(super) fn puppet(session: &Session) -> Result<Response, Refusal> {
+    let shown = session.shown();
+    let bench = shown.bench()?;
+    let layer = |k: usize| {
+        let shape = &bench.layers()[k];
+        let drawn = layer_scene(bench.scene(), k).drawn_poses();
+        let texture = |index: usize| {
+            json!({
+                "pose": drawn[index],
+                "colour": session.picture(&shown, k, index, Kind::Colour).0,
+                "drawing": session.picture(&shown, k, index, Kind::Drawing).0,
+            })
+        };
+        json!({
+            "name": shape.name(), "poses": shape.poses(),
+            "vertices": shape.mapping().poses.topology().vertex_count(),
+            "triangles": shape.mapping().poses.topology().triangles().len(),
+            "texture_of": texture_of(bench, k),
+            "textures": (0..drawn.len()).map(texture).collect::<Vec<_>>(),
+        })
+    };
+    let layers: Vec<Value> = (0..bench.layers().len()).map(layer).collect();
+    Ok(Response::json(&json!({
+        "shape": shown.revisions.shape, "pictures": shown.revisions.pictures, "layers": layers,
+    })))
+}
+
+/// `GET api/mesh`.
+pub(super) fn mesh(session: &Session) -> Result<Response, Refusal> {
+    let shown = session.shown();
+    let mut bytes = Vec::new();
+    let mut words = Words(&mut bytes);
+    for shape in shown.bench()?.layers() {
+        let (poses, rings) = (&shape.mapping().poses, &shape.mapping().rings);
+        let triangles = poses.topology().triangles();
+        words.u32(poses.topology().vertex_count());
+        words.u32(triangles.len());
+        words.u32(poses.len());
+        words.u32(rings.len());
+        for vertex in triangles.iter().flatten() {
+            words.u32(*vertex);
+        }
+        for positions in poses.positions() {
+            words.points(positions);
+        }
+        for ring in rings {
+            words.u32(ring.len());
+            for vertex in ring {
+                words.u32(*vertex);
+            }
+        }
+    }
+    Ok(Response::binary(bytes))
+}
+
+/// `GET api/texture`.
+pub(super) fn texture(request: &Request, session: &Session) -> Result<Response, Refusal> {
+    let shown = session.shown();
+    let bench = shown.bench()?;
+    let layer = asked_layer(request, bench)?;
+    let index = index(request, "index", bench.drawings(layer).len())?;
+    let kind = match request.value("kind") {
+        None | Some("colour") => Kind::Colour,
+        Some("drawing") => Kind::Drawing,
+        Some(other) => return Err(Refusal::bad(format!("kind '{other}' is neither colour nor drawing"))),
+    };
+    let (_, png) = session.picture(&shown, layer, index, kind);
+    Ok(Response {
+        may_be_kept: request.value("v").is_some(),
+        ..Response::new("image/png", png?.as_ref().clone())
+    })
+}
+
+/// A picture as a PNG file.
+pub(super) fn png(texture: &PuppetTexture) -> Result<Vec<u8>, Refusal> {
+    texture_png(texture).map_err(Refusal::failed)
+}
