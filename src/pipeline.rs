@@ -32,14 +32,14 @@ mod workbench;
 
 pub use character::Character;
 pub use deformed::DeformedPose;
-pub use drawings::read_drawings;
+pub use drawings::{read_drawing_of, read_drawings};
 pub use error::PipelineError;
 pub use figure::Posed;
 pub use layer::{LayerShape, PosedLayer};
 pub use layout::{automatic_places, laid_out};
 pub use mapping::{map_drawings, map_drawings_observed};
-pub use reach::{Reach, ReachOptions, ShapePoint, reach, reach_landmarks};
+pub use reach::{Reach, ReachOptions, ShapePoint, reach, reach_landmarks, reach_near};
 pub use report::{MappingReport, Stage};
 pub use triangulation::{LandmarkLabel, Refinement, triangulate_polygons};
-pub use weighting::{checked_weights, weight_provider};
+pub use weighting::{EditableWeights, checked_weights, editable_weights, weight_provider};
 pub use workbench::{DrawingFiles, Workbench};

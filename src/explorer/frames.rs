@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use inbetween::math::Point;
-use inbetween::math::predicate;
+use inbetween::blend::Stretch;
+use inbetween::math::{Point, predicate};
 use inbetween::pipeline::{Posed, Workbench, checked_weights};
 use inbetween::scene::Provider;
 use inbetween::weights::WeightProvider;
@@ -54,6 +54,16 @@ fn sharpness(request: &Request) -> Result<Option<f64>, Refusal> {
     }
 }
 
+fn stretch(request: &Request) -> Result<Option<Stretch>, Refusal> {
+    Ok(match request.value("stretch") {
+        None | Some("") => None,
+        Some("linear") => Some(Stretch::Linear),
+        Some("limited") => Some(Stretch::Limited),
+        Some("log") => Some(Stretch::Log),
+        Some(other) => return Err(Refusal::bad(format!("stretch '{other}' is none of linear, limited, log"))),
+    })
+}
+
 /// The weights of every place or list of weights of a request, in its order.
 fn asked_weights(request: &Request, shown: &Shown) -> Result<Vec<Vec<f64>>, Refusal> {
     let provider = asked_provider(request)?;
@@ -97,7 +107,7 @@ pub(super) fn weights(request: &Request, session: &Session) -> Result<Response, 
 /// `GET api/frame`.
 pub(super) fn frame(request: &Request, session: &Session) -> Result<Response, Refusal> {
     let shown = session.shown();
-    let bench = shown.bench()?;
+    let bench = &shown.stretched(stretch(request)?)?;
     let sharpness = sharpness(request)?;
     let with_silhouette = request.value("silhouette") == Some("1");
     let mut bytes = Vec::new();

@@ -85,7 +85,7 @@
 //! # Frames
 //!
 //! `GET api/frame?at=X,Y` (or `weights=W0,W1,...`; either may be repeated) answers one block after the other, in that order. Optional:
-//! `provider=biharmonic|rbf`, `sharpness=0..1`, `stretch=linear|limited|log` in place of the scene's, for comparison;
+//! `provider=biharmonic|rbf`, `sharpness=0..1`, `stretch=linear|limited|log` in place of the scene's, for comparison (the first frame with another `stretch` takes some 10 ms longer);
 //! `silhouette=1` adds the blended outlines.
 //!
 //! One block, u32 unless f32 is said, #N poses, #L layers:
@@ -139,23 +139,27 @@
 //!
 //! # Correspondences
 //!
-//! `GET api/correspondences?layer=0&links=48`:
+//! `GET api/correspondences?layer=0&samples=0`:
 //! ```json
 //! {"shape": 2, "reference": 0,
-//!  "poses": [{"pose": 0, "name": "stand", "drawn": true,
+//!  "poses": [{"pose": 0, "name": "stand", "drawn": true,   // a copy is not drawn: no landmark can be put on it
 //!             "outline": [x, y, x, y, ...], "holes": [[x, y, ...], ...],
 //!             "picture": {"origin": [0, 0], "scale": 1, "width": 640, "height": 720},
-//!             "salient": [{"at": [x, y], "strength": 1.2}, ...],
-//!             "cost": 0.4, "looks_mirrored": false}, ...],
-//!  "links": [{"at": [[x, y], ...], "mismatch": [0.1, ...]}, ...],  // one point a pose; even along the reference
+//!             "salient": [{"at": [x, y], "scale": 0.02, "curvature": 3.1}, ...],  // scale: the widest smoothing it survives
+//!             "cost": 0.4, "looks_mirrored": false}, ...],  // the poses of the layer
+//!  "links": [{"at": [[x, y], ...], "landmark": null}, ...],  // numbered from 1; one point a pose of the layer
+//!  "costs": [[0.3, ...], ...],                              // per pose, from link k to the next: how unlike the outlines are
+//!  "suggestions": [{"pose": 2, "from": 3, "to": 4, "cost": 2.9}, ...],  // between these links (from 0) a landmark would help
 //!  "landmarks": [{"name": "nose", "kind": "outline",    // or "inside", "line"
 //!                 "given": [true, false, ...], "at": [[[x, y]], ...]}, ...],   // per pose the points of it
-//!  "suggestions": [{"at": [[x, y], ...]}, ...]}          // where a landmark would help most
+//!  "samples": [[x, y, x, y, ...], ...]}                   // per pose as many corresponding points as asked for, at most 4096
 //! ```
-//! Without a mesh only `poses` are filled, as far as their drawings can be read (`outline` is null otherwise).
+//! `links` are those of `inbetween show`. Without a mesh only `poses` are filled, as far as their drawings can be read (`outline`
+//! and `picture` are null otherwise), and `shape` is 0. While a landmark that was moved is not mapped yet, or cannot be, `landmarks`
+//! are those of the match that is shown; those of the newest scene are in `api/scene`.
 //!
-//! `POST api/carry {"layer": 0, "pose": "stand", "at": [x, y]}` answers `{"kind": "outline" | "inside", "at": [[x, y], ...]}`: where the
-//! present match has this point on every pose; what a new landmark begins with.
+//! `POST api/carry {"layer": 0, "pose": "stand", "at": [x, y]}` answers `{"kind": "outline" | "inside", "poses": ["stand", ...],
+//! "at": [[x, y], ...]}`: where the present match has this point on every pose of the layer; what a new landmark begins with.
 //!
 //! # Grids
 //!
@@ -169,7 +173,8 @@
 //! # Edits
 //!
 //! `POST api/edit {"ops": [OP, ...], "label": "move pose 'jump'", "phase": "done"}`; answers the state, with `"revision"` of the
-//! scene. All ops of a request are one step of undo. `phase`:
+//! scene. All ops of a request are one step of undo; so are edits with the same
+//! `"merge": "WORD"` in direct succession (arrow keys). The answer has `"names"` too, those that were made up. `phase`:
 //! - `"done"` (default): the edit is taken, saved, and can be undone.
 //! - `"drag"`: shown but not saved; replaces what the drag before showed (ops are always applied to the text before the first
 //!   `drag`). Weights follow at once, meshes as soon as they can; requests that are overtaken are left out.
@@ -208,9 +213,11 @@
 //! possible: u32 V, inverted triangles; V positions x, y (f32). Answers with the same `from`s share a factorisation, and go on from where the
 //! last one ended; `steps` bounds the work (default 40).
 //!
-//! `POST api/reach {"layer": 0, "at": [X, Y], "points": [{"from": [x, y], "to": [x, y]}], "provider": null}`: inverse posing: the place of the
-//! pose space, near `at` (where `from` lies on the drawing that is shown) or, with `"search": "everywhere"`, anywhere, whose
-//! drawing brings the points nearest to their targets: `{"at": [...], "weights": [...], "reached": [[x, y], ...], "error": 1.5}`.
+//! `POST api/reach {"layer": 0, "at": [X, Y], "start": [X, Y], "points": [{"from": [x, y], "to": [x, y]}], "provider": null}`: inverse
+//! posing: the place of the pose space whose drawing brings the points nearest to their targets. `at` is where they were taken hold
+//! of (`from` lies on the drawing there); the search goes downhill from `start` (default `at`; a drag gives the place it has reached)
+//! or, with `"search": "everywhere"`, looks anywhere. Answers `{"at": [...], "weights": [...], "reached": [[x, y], ...], "error": 1.5}`,
+//! `error` in drawing units.
 //!
 //! # Animation and gestures
 //!
@@ -230,13 +237,16 @@
 //! "state": "running" | "done" | "failed" | "cancelled", "message": "..."}`. One at a time (409). `POST api/export/cancel` ends it.
 //!
 //! `POST api/command {"verb": "frame" | "render" | "weights", ...}` answers `{"command": "inbetween frame ..."}`, quoted for a shell: `frame` takes
-//! `at`, `render` the fields of an export, `weights` `at`.
-//!
-//! # Not there yet
-//!
-//! Everything but `api/state`, `api/scene`, `api/text`, `api/weights`, `api/frame`, `api/puppet`, `api/mesh`, `api/texture`.
+//! `at` and `output`, `render` the fields of an export, `weights` `at` and `provider`.
 
+mod correspondences;
+mod document;
+mod edit;
+mod export;
 mod frames;
+mod gesture;
+mod grids;
+mod handles;
 mod http;
 mod model;
 mod page;
@@ -269,6 +279,10 @@ impl Explorer {
         std::thread::Builder::new()
             .name("worker".to_owned())
             .spawn(move || worker::run(&working))?;
+        let watched = Arc::clone(&session);
+        std::thread::Builder::new()
+            .name("watch".to_owned())
+            .spawn(move || worker::watch(&watched))?;
         Ok(Self { server, session })
     }
 

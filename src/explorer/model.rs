@@ -2,7 +2,8 @@
 
 use std::sync::{Arc, OnceLock};
 
-use inbetween::pipeline::{PipelineError, Workbench, weight_provider};
+use inbetween::blend::Stretch;
+use inbetween::pipeline::{DrawingFiles, EditableWeights, PipelineError, Workbench, weight_provider};
 use inbetween::scene::{Provider, Scene};
 use inbetween::texture::shared_texture_weights;
 use inbetween::weights::WeightProvider;
@@ -30,6 +31,8 @@ pub(crate) struct Shown {
     pub(crate) revisions: Revisions,
     /// Weights that are asked for by name: biharmonic, radial.
     providers: [OnceLock<Result<Arc<dyn WeightProvider>, Problem>>; 2],
+    /// The same with stretches blended in another way: linear, limited, logarithmic.
+    stretched: [OnceLock<Result<Arc<Workbench>, Problem>>; 3],
 }
 
 impl Shown {
@@ -45,6 +48,7 @@ impl Shown {
             problems,
             revisions,
             providers: Default::default(),
+            stretched: Default::default(),
         }
     }
 
@@ -56,6 +60,29 @@ impl Shown {
                 None => Problem::new("the drawings are still being mapped; ask again when the state says so"),
             })
         })
+    }
+
+    /// The same with another way to blend stretches.
+    pub(crate) fn stretched(&self, stretch: Option<Stretch>) -> Result<Arc<Workbench>, Refusal> {
+        let bench = self.bench()?;
+        let Some(stretch) = stretch.filter(|stretch| *stretch != bench.scene().blend.stretch) else {
+            return Ok(Arc::clone(bench));
+        };
+        let own = &self.stretched[match stretch {
+            Stretch::Linear => 0,
+            Stretch::Limited => 1,
+            Stretch::Log => 2,
+        }];
+        let make = || {
+            let mut scene = bench.scene().clone();
+            scene.blend.stretch = stretch;
+            for layer in &mut scene.layers {
+                layer.scene.blend.stretch = stretch;
+            }
+            let made = bench.edited(&scene, DrawingFiles::Unchanged).map(Arc::new);
+            made.map_err(|error| Problem::from(&error))
+        };
+        own.get_or_init(make).clone().map_err(Refusal::conflict)
     }
 
     /// The scene that frames are made of.
@@ -74,7 +101,8 @@ impl Shown {
         if let Some(bench) = &self.bench
             && wanted == scene.pose_space.provider
         {
-            return Ok(Arc::clone(bench.weights()));
+            let own: Arc<dyn WeightProvider> = Arc::<EditableWeights>::clone(bench.weights());
+            return Ok(own);
         }
         let own = &self.providers[usize::from(wanted == Provider::Rbf)];
         let made = || {

@@ -19,19 +19,35 @@ pub(super) fn scene(session: &Session) -> Value {
         json!({"scale": bench.camera().scale(), "shift": [shift.x, shift.y]})
     });
     let rest = json!({
-        "file": session.typed(),
+        "file": session.file().display().to_string(),
         "revision": shown.revisions.scene,
         "camera": camera,
         "notes": bench.map_or(&[][..], |bench| bench.notes()),
         "problems": shown.problems,
     });
+    if let Some(animation) = answer.get_mut("animation").and_then(Value::as_object_mut) {
+        animation.insert("own_keys".to_owned(), has_own_keys(&session.text()).into());
+    }
     if let (Value::Object(answer), Value::Object(rest)) = (&mut answer, rest) {
         answer.extend(rest);
         if shown.scene.is_none() {
-            answer.insert("name".to_owned(), session.file_name().into());
+            let name = session
+                .file()
+                .file_name()
+                .map(|name| name.to_string_lossy().into_owned());
+            answer.insert("name".to_owned(), name.into());
         }
     }
     answer
+}
+
+/// Whether the keys are the file's own, not the places of the poses.
+fn has_own_keys(text: &str) -> bool {
+    let document = text.parse::<toml_edit::DocumentMut>().ok();
+    let keys = document
+        .as_ref()
+        .and_then(|document| document.get("animation")?.get("keys")?.as_array());
+    keys.is_some_and(|keys| !keys.is_empty())
 }
 
 /// Of a scene whose text cannot be read.

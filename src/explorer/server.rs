@@ -8,11 +8,12 @@ use std::time::Duration;
 
 use anyhow::Context as _;
 
+use super::document::Document;
 use super::http::{NoRequest, Request, Response};
 use super::problem::Refusal;
 use super::security::Gate;
 use super::session::Session;
-use super::{frames, page, pictures, scene_json};
+use super::{correspondences, export, frames, gesture, grids, handles, page, pictures, scene_json};
 
 /// Connections at a time; a browser opens six.
 const MOST_CONNECTIONS: usize = 64;
@@ -66,7 +67,7 @@ impl Server {
 }
 
 /// Answers the requests of one connection.
-fn serve(stream: &TcpStream, gate: &Gate, session: &Session) {
+fn serve(stream: &TcpStream, gate: &Gate, session: &Arc<Session>) {
     // Without it small answers may wait for 40 ms.
     let _ = stream.set_nodelay(true);
     let mut from = BufReader::new(stream);
@@ -89,7 +90,7 @@ fn serve(stream: &TcpStream, gate: &Gate, session: &Session) {
     }
 }
 
-fn answer(request: &Request, gate: &Gate, session: &Session) -> Response {
+fn answer(request: &Request, gate: &Gate, session: &Arc<Session>) -> Response {
     let Some(path) = gate.admitted(request) else {
         return Response::text(403, "open the address that inbetween printed\n");
     };
@@ -113,25 +114,72 @@ fn answer(request: &Request, gate: &Gate, session: &Session) -> Response {
     api(route, request, session).unwrap_or_else(|refusal| refusal.response())
 }
 
-fn api(route: &str, request: &Request, session: &Session) -> Result<Response, Refusal> {
+/// The routes of the page of the [explorer](super).
+fn api(route: &str, request: &Request, session: &Arc<Session>) -> Result<Response, Refusal> {
+    let json = |value| Ok(Response::json(&value));
+    let body = &request.body;
     match (request.method.as_str(), route) {
-        ("GET", "state") => {
-            let state = match request.value("after") {
-                None => session.state_json(),
-                Some(after) => {
-                    let after = after.parse().map_err(|_| Refusal::bad("`after` is no number"))?;
-                    session.state_after(after, LONGEST_WAIT)
-                }
-            };
-            Ok(Response::json(&state))
-        }
+        ("GET", "state") => match request.value("after") {
+            None => json(session.state_json()),
+            Some(after) => {
+                let after = after.parse().map_err(|_| Refusal::bad("`after` is no number"))?;
+                json(session.state_after(after, LONGEST_WAIT))
+            }
+        },
         ("GET", "text") => Ok(Response::text(200, &session.text())),
-        ("GET", "scene") => Ok(Response::json(&scene_json::scene(session))),
+        ("GET", "scene") => json(scene_json::scene(session)),
         ("GET", "frame") => frames::frame(request, session),
         ("GET", "weights") => frames::weights(request, session),
         ("GET", "puppet") => pictures::puppet(session),
         ("GET", "mesh") => pictures::mesh(session),
         ("GET", "texture") => pictures::texture(request, session),
+        ("GET", "drawing") => correspondences::drawing(request, session),
+        ("GET", "correspondences") => correspondences::correspondences(request, session),
+        ("GET", "grid") => grids::weights(request, session),
+        ("GET", "validity") => grids::validity(request, session),
+        ("POST", "carry") => correspondences::carry(body, session),
+        ("POST", "edit") => json(session.edit(body)?),
+        ("POST", "undo") => json(session.step(Document::undo)?),
+        ("POST", "redo") => json(session.step(Document::redo)?),
+        ("POST", "save") => json(session.save()),
+        ("POST", "conflict") => json(session.end_conflict(body)?),
+        ("POST", "deform") => handles::deform(body, session),
+        ("POST", "reach") => handles::reach_place(body, session),
+        ("POST", "path") => json(gesture::path(body, session)?),
+        ("POST", "gesture") => json(gesture::gesture(body, session)?),
+        ("POST", "export") => json(export::start(body, session)?),
+        ("POST", "export/cancel") => json(export::cancel(session)?),
+        ("POST", "command") => json(export::command(body, session)?),
+        (_, route) if ROUTES.contains(&route) => Ok(Response::text(405, "another method is meant\n")),
         _ => Ok(Response::text(404, "there is no such address\n")),
     }
 }
+
+/// All routes.
+const ROUTES: &[&str] = &[
+    "state",
+    "text",
+    "scene",
+    "frame",
+    "weights",
+    "puppet",
+    "mesh",
+    "texture",
+    "drawing",
+    "correspondences",
+    "grid",
+    "validity",
+    "carry",
+    "edit",
+    "undo",
+    "redo",
+    "save",
+    "conflict",
+    "deform",
+    "reach",
+    "path",
+    "gesture",
+    "export",
+    "export/cancel",
+    "command",
+];

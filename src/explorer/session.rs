@@ -1,16 +1,24 @@
 //! The state of an explored scene.
 //!
-//! What is shown is one immutable [`Shown`]; requests take it and never wait for work. Edits change the document at once and tell
-//! the worker which scene is wanted; it shows the newest as soon as it can.
+//! What is shown is one immutable [`Shown`]; requests take it and never wait for work. Edits change the [`Document`] at once and tell
+//! the worker which scene is wanted; it shows the newest as soon as it can. Weights follow a pose that is moved at once.
+//!
+//! Locks are taken in this order: document, state, pictures.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use inbetween::scene::Scene;
+use inbetween::pipeline::{DrawingFiles, Workbench};
+use inbetween::scene::{Layout, Provider, Scene, WeightRange};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use super::document::{Document, Outside};
+use super::edit::{self, Context, Op};
+use super::export::Jobs;
+use super::handles::Draggers;
 use super::model::Shown;
 use super::pictures::{self, Kind};
 use super::problem::{Problem, Refusal};
@@ -22,6 +30,7 @@ type EncodedPicture = (Value, Result<Arc<Vec<u8>>, Refusal>);
 #[derive(Debug)]
 pub(crate) struct Session {
     file: PathBuf,
+    document: Mutex<Document>,
     state: Mutex<State>,
     /// Told whenever `seq` changes.
     changed: Condvar,
@@ -29,24 +38,68 @@ pub(crate) struct Session {
     wanted: Condvar,
     /// By layer, drawing and kind, of the pictures' revision.
     pictures: Mutex<(u64, BTreeMap<(usize, usize, bool), EncodedPicture>)>,
+    /// Handles that are being dragged.
+    pub(super) draggers: Draggers,
+    /// The export.
+    pub(super) jobs: Jobs,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct State {
     seq: u64,
-    text: String,
+    /// Counts edits.
+    generation: u64,
+    /// The last edit whose weights were shown at once.
+    reweighted: u64,
     shown: Arc<Shown>,
     /// What the worker has to do.
     wanted: Option<Wanted>,
     working: bool,
+    /// The drawings' files have changed since they were read.
+    is_stale: bool,
     mapping_ms: Option<f64>,
+    file: FileState,
+    job: Value,
+}
+
+/// What the page is told of the document.
+#[derive(Debug, Default, PartialEq, Serialize)]
+struct FileState {
+    dragging: bool,
+    saved: bool,
+    conflict: bool,
+    save_error: Option<String>,
+    undo: Option<String>,
+    redo: Option<String>,
 }
 
 /// A scene to be computed.
 #[derive(Debug, Clone)]
 pub(crate) struct Wanted {
     pub(crate) scene: Arc<Scene>,
-    pub(crate) since: Instant,
+    pub(crate) files: DrawingFiles,
+    since: Instant,
+    generation: u64,
+}
+
+/// The body of `POST api/edit`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EditRequest {
+    ops: Vec<Op>,
+    label: Option<String>,
+    #[serde(default)]
+    phase: Phase,
+    merge: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Phase {
+    Drag,
+    #[default]
+    Done,
+    Cancel,
 }
 
 impl Session {
@@ -54,37 +107,23 @@ impl Session {
     pub(crate) fn open(file: &Path) -> Self {
         let session = Self {
             file: file.to_owned(),
+            document: Mutex::new(Document::open(file)),
             state: Mutex::new(State {
                 seq: 1,
-                text: String::new(),
-                shown: Arc::new(Shown::default()),
-                wanted: None,
-                working: false,
-                mapping_ms: None,
+                ..State::default()
             }),
             changed: Condvar::new(),
             wanted: Condvar::new(),
             pictures: Mutex::default(),
+            draggers: Draggers::default(),
+            jobs: Jobs::default(),
         };
-        let text = std::fs::read_to_string(file);
-        let mut state = session.lock();
-        match text {
-            Ok(text) => {
-                state.text = text;
-                session.read_scene(&mut state);
-            }
-            Err(_) => {
-                let problem = Scene::open(file).err().map(|error| Problem::from(&error));
-                state.shown = Arc::new(Shown::new(
-                    None,
-                    None,
-                    problem.into_iter().collect(),
-                    Default::default(),
-                ));
-            }
-        }
-        drop(state);
+        session.read_document(&session.lock_document());
         session
+    }
+
+    fn lock_document(&self) -> MutexGuard<'_, Document> {
+        self.document.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
@@ -96,22 +135,23 @@ impl Session {
         self.changed.notify_all();
     }
 
-    /// Takes the scene that the text says, and wants it computed.
-    fn read_scene(&self, state: &mut State) {
-        let before = Arc::clone(&state.shown);
-        let mut revisions = before.revisions;
-        revisions.scene += 1;
-        match Scene::parse(&state.text, &self.file) {
-            Ok(scene) => {
-                let scene = Arc::new(scene);
-                state.wanted = Some(Wanted {
-                    scene: Arc::clone(&scene),
-                    since: Instant::now(),
-                });
-                self.wanted.notify_one();
-                state.shown = Arc::new(Shown::new(Some(scene), before.bench.clone(), Vec::new(), revisions));
-            }
+    /// Takes the scene that the document says.
+    fn read_document(&self, document: &Document) {
+        let read = if document.text().is_empty() {
+            // Why there is none.
+            Scene::open(&self.file)
+        } else {
+            Scene::parse(document.text(), &self.file)
+        };
+        match read {
+            Ok(scene) => self.adopt(document, scene, Phase::Done),
             Err(error) => {
+                let mut state = self.lock();
+                let before = Arc::clone(&state.shown);
+                let mut revisions = before.revisions;
+                revisions.scene += 1;
+                state.generation += 1;
+                state.wanted = None;
                 let problems = vec![Problem::from(&error)];
                 state.shown = Arc::new(Shown::new(
                     before.scene.clone(),
@@ -119,9 +159,165 @@ impl Session {
                     problems,
                     revisions,
                 ));
+                state.file = file_state(document);
+                self.touch(&mut state);
             }
         }
-        self.touch(state);
+    }
+
+    /// Shows an edited scene, and wants computed what cannot be shown at once.
+    fn adopt(&self, document: &Document, mut scene: Scene, phase: Phase) {
+        let before = self.shown();
+        if let Some(bench) = &before.bench
+            && scene.layout == Layout::Automatic
+            && bench.scene().names() == scene.names()
+        {
+            let places: Vec<Vec<f64>> = bench.scene().poses.iter().map(|pose| pose.at.clone()).collect();
+            let as_given = scene.layout;
+            scene = scene.laid_out(&places);
+            scene.layout = as_given;
+        }
+        let at_once = before.bench.as_ref().and_then(|bench| reweighted(bench, &scene));
+        let scene = Arc::new(scene);
+        let mut state = self.lock();
+        let before = Arc::clone(&state.shown);
+        let mut revisions = before.revisions;
+        revisions.scene += 1;
+        state.generation += 1;
+        let is_complete = phase == Phase::Drag && at_once.as_ref().is_some_and(|(_, only)| *only == Only::Weights);
+        if at_once.is_some() {
+            revisions.weights += 1;
+            state.reweighted = state.generation;
+        }
+        // A drag leaves undone what was wanted before it only if it says all there is to say.
+        if is_complete {
+            state.wanted = None;
+        } else {
+            state.wanted = Some(Wanted {
+                scene: Arc::clone(&scene),
+                files: if state.is_stale {
+                    DrawingFiles::Reread
+                } else {
+                    DrawingFiles::Unchanged
+                },
+                since: Instant::now(),
+                generation: state.generation,
+            });
+            self.wanted.notify_one();
+        }
+        let bench = at_once
+            .map(|(bench, _)| Arc::new(bench))
+            .or_else(|| before.bench.clone());
+        let problems = if is_complete {
+            Vec::new()
+        } else {
+            before.problems.clone()
+        };
+        state.shown = Arc::new(Shown::new(Some(scene), bench, problems, revisions));
+        state.file = file_state(document);
+        self.touch(&mut state);
+    }
+
+    /// `POST api/edit`.
+    pub(crate) fn edit(&self, body: &[u8]) -> Result<Value, Refusal> {
+        let request: EditRequest = serde_json::from_slice(body).map_err(Refusal::bad)?;
+        let mut document = self.lock_document();
+        let mut names = Vec::new();
+        if request.phase == Phase::Cancel {
+            if document.is_dragging() {
+                document.cancel();
+                self.read_document(&document);
+            }
+        } else {
+            let shown = self.shown();
+            let context = Context {
+                scene: shown.scene.as_deref(),
+                bench: shown.bench.as_deref(),
+            };
+            let edited = edit::apply(document.base(), &request.ops, &context)?;
+            let scene = Scene::parse(&edited.text, &self.file).map_err(|e| Refusal::conflict(Problem::from(&e)))?;
+            names = edited.names;
+            if request.phase == Phase::Drag {
+                document.try_out(edited.text);
+            } else {
+                let label = request.label.or_else(|| request.ops.first().map(Op::label));
+                document.take(
+                    edited.text,
+                    label.as_deref().unwrap_or("edit"),
+                    request.merge.as_deref(),
+                );
+            }
+            self.adopt(&document, scene, request.phase);
+        }
+        let mut answer = self.state_json();
+        answer["names"] = names.into();
+        answer["revision"] = self.shown().revisions.scene.into();
+        Ok(answer)
+    }
+
+    /// `POST api/undo` and `api/redo`.
+    pub(crate) fn step(&self, step: fn(&mut Document) -> bool) -> Result<Value, Refusal> {
+        let mut document = self.lock_document();
+        if !step(&mut document) {
+            return Err(Refusal::conflict(Problem::new("there is no such step")));
+        }
+        self.read_document(&document);
+        Ok(self.state_json())
+    }
+
+    /// `POST api/save`.
+    pub(crate) fn save(&self) -> Value {
+        let mut document = self.lock_document();
+        document.save();
+        self.lock().file = file_state(&document);
+        self.touch(&mut self.lock());
+        self.state_json()
+    }
+
+    /// `POST api/conflict`.
+    pub(crate) fn end_conflict(&self, body: &[u8]) -> Result<Value, Refusal> {
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Choice {
+            take: Take,
+        }
+        #[derive(Deserialize)]
+        #[serde(rename_all = "lowercase")]
+        enum Take {
+            Mine,
+            Theirs,
+        }
+        let choice: Choice = serde_json::from_slice(body).map_err(Refusal::bad)?;
+        let mut document = self.lock_document();
+        if !document.is_in_conflict() {
+            return Err(Refusal::conflict(Problem::new("there is no conflict")));
+        }
+        match choice.take {
+            Take::Mine => document.keep_mine(),
+            Take::Theirs => document.take_theirs().map_err(Refusal::failed)?,
+        }
+        self.read_document(&document);
+        Ok(self.state_json())
+    }
+
+    /// Looks at the scene file.
+    pub(crate) fn look_at_file(&self) {
+        let mut document = self.lock_document();
+        match document.look() {
+            Outside::Same => {}
+            Outside::Taken => self.read_document(&document),
+            Outside::Conflict => {
+                self.lock().file = file_state(&document);
+                self.touch(&mut self.lock());
+            }
+        }
+    }
+
+    /// Reads the drawings again: their files have changed.
+    pub(crate) fn reread_drawings(&self) {
+        let document = self.lock_document();
+        self.lock().is_stale = true;
+        self.read_document(&document);
     }
 
     /// What is shown.
@@ -130,19 +326,13 @@ impl Session {
     }
 
     /// The scene's path, as it was given.
-    pub(crate) fn typed(&self) -> String {
-        self.file.display().to_string()
-    }
-
-    pub(crate) fn file_name(&self) -> String {
-        self.file
-            .file_name()
-            .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+    pub(crate) fn file(&self) -> &Path {
+        &self.file
     }
 
     /// The scene's text.
     pub(crate) fn text(&self) -> String {
-        self.lock().text.clone()
+        self.lock_document().text().to_owned()
     }
 
     /// `GET api/state`.
@@ -161,31 +351,45 @@ impl Session {
         state_json(&state)
     }
 
+    /// Tells the page how the export is getting on.
+    pub(crate) fn tell_job(&self, job: Value) {
+        let mut state = self.lock();
+        state.job = job;
+        self.touch(&mut state);
+    }
+
     /// The next scene to compute; waits until there is one.
     pub(crate) fn next_wanted(&self) -> (Wanted, Arc<Shown>) {
-        let state = self.lock();
-        let mut state = self
-            .wanted
-            .wait_while(state, |state| state.wanted.is_none())
-            .unwrap_or_else(PoisonError::into_inner);
-        state.working = true;
-        self.touch(&mut state);
-        match state.wanted.take() {
-            Some(wanted) => (wanted, Arc::clone(&state.shown)),
-            None => unreachable!("it was waited for"),
+        let mut state = self.lock();
+        loop {
+            if let Some(wanted) = state.wanted.take() {
+                state.working = true;
+                self.touch(&mut state);
+                return (wanted, Arc::clone(&state.shown));
+            }
+            state = self.wanted.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
     }
 
     /// Shows what has been computed.
-    pub(crate) fn show(&self, wanted: &Wanted, made: Result<Arc<inbetween::pipeline::Workbench>, Problem>) {
+    pub(crate) fn show(&self, wanted: &Wanted, made: Result<Workbench, Problem>) {
         let mut state = self.lock();
         let before = Arc::clone(&state.shown);
         let mut revisions = before.revisions;
-        let is_newest = state.wanted.is_none();
-        state.working = !is_newest;
-        state.shown = Arc::new(match made {
-            Ok(bench) => {
+        let is_newest = state.wanted.is_none() && state.generation == wanted.generation;
+        state.working = state.wanted.is_some();
+        let mut shown = (before.scene.clone(), before.bench.clone(), before.problems.clone());
+        match made {
+            Ok(mut bench) => {
                 let old = before.bench.as_ref();
+                if wanted.files == DrawingFiles::Reread && is_newest {
+                    state.is_stale = false;
+                }
+                if state.reweighted > wanted.generation
+                    && let Some(old) = old.filter(|old| old.scene().names() == bench.scene().names())
+                {
+                    bench = bench.reweighted(&with_places_of(bench.scene(), old.scene()), Arc::clone(old.weights()));
+                }
                 revisions.scene += 1;
                 revisions.weights += 1;
                 if !old.is_some_and(|old| old.has_pictures_of(&bench)) {
@@ -195,22 +399,19 @@ impl Session {
                     revisions.shape += 1;
                     state.mapping_ms = Some(1e3 * wanted.since.elapsed().as_secs_f64());
                 }
-                let scene = if is_newest {
-                    Some(Arc::new(bench.scene().clone()))
-                } else {
-                    before.scene.clone()
-                };
-                Shown::new(scene, Some(bench), before.problems.clone(), revisions)
+                if is_newest {
+                    let mut scene = bench.scene().clone();
+                    // A layout that was found is not one that the file has.
+                    scene.layout = wanted.scene.layout;
+                    shown.0 = Some(Arc::new(scene));
+                    shown.2 = Vec::new();
+                }
+                shown.1 = Some(Arc::new(bench));
             }
-            Err(problem) => {
-                let problems = if is_newest {
-                    vec![problem]
-                } else {
-                    before.problems.clone()
-                };
-                Shown::new(before.scene.clone(), before.bench.clone(), problems, revisions)
-            }
-        });
+            Err(problem) if is_newest => shown.2 = vec![problem],
+            Err(_) => {}
+        }
+        state.shown = Arc::new(Shown::new(shown.0, shown.1, shown.2, revisions));
         self.touch(&mut state);
     }
 
@@ -240,15 +441,81 @@ impl Session {
     }
 }
 
+/// What changed besides places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Only {
+    /// Nothing: what is shown is complete.
+    Weights,
+    /// Something that has to be computed.
+    More,
+}
+
+/// The same shapes with the weights of `scene`, if these follow from moving poses, which takes a millisecond.
+fn reweighted(bench: &Workbench, scene: &Scene) -> Option<(Workbench, Only)> {
+    let old = bench.scene();
+    let is_quick = match scene.pose_space.provider {
+        Provider::Rbf => true,
+        Provider::Biharmonic => scene.pose_space.range == WeightRange::Free && scene.pseudo_poses.is_empty(),
+    };
+    let is_alike = is_quick
+        && old.pose_space == scene.pose_space
+        && old.pseudo_poses == scene.pseudo_poses
+        && old.names() == scene.names()
+        && old.dimension() == scene.dimension();
+    if !is_alike {
+        return None;
+    }
+    let moved: Vec<usize> = (0..scene.poses.len())
+        .filter(|&k| old.poses[k].at != scene.poses[k].at)
+        .collect();
+    if moved.is_empty() {
+        return None;
+    }
+    let mut weights = bench.weights().as_ref().clone();
+    for pose in moved {
+        weights.move_pose(pose, &scene.poses[pose].at).ok()?;
+    }
+    let moved = with_places_of(old, scene);
+    let only = if moved == *scene { Only::Weights } else { Only::More };
+    Some((bench.reweighted(&moved, Arc::new(weights)), only))
+}
+
+/// A scene with the places, and what follows from them, of another with as many poses.
+fn with_places_of(scene: &Scene, other: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    for (pose, other) in scene.poses.iter_mut().zip(&other.poses) {
+        pose.at.clone_from(&other.at);
+    }
+    for (layer, other) in scene.layers.iter_mut().zip(&other.layers) {
+        layer.scene = with_places_of(&layer.scene, &other.scene);
+    }
+    scene.animation = other.animation.clone();
+    scene
+}
+
+fn file_state(document: &Document) -> FileState {
+    let [undo, redo] = document.labels().map(|label| label.map(str::to_owned));
+    FileState {
+        dragging: document.is_dragging(),
+        saved: document.is_saved(),
+        conflict: document.is_in_conflict(),
+        save_error: document.save_error().map(str::to_owned),
+        undo,
+        redo,
+    }
+}
+
 fn state_json(state: &State) -> Value {
-    json!({
+    let mut answer = json!({
         "seq": state.seq,
         "revisions": state.shown.revisions,
         "working": state.working || state.wanted.is_some(),
-        "dragging": false, "saved": true, "conflict": false, "save_error": null,
-        "undo": null, "redo": null,
         "problems": state.shown.problems,
         "timings": {"mapping_ms": state.mapping_ms},
-        "job": null,
-    })
+        "job": state.job,
+    });
+    if let (Value::Object(answer), Ok(Value::Object(file))) = (&mut answer, serde_json::to_value(&state.file)) {
+        answer.extend(file);
+    }
+    answer
 }

@@ -1,26 +1,72 @@
-//! What takes longer than a request may wait.
+//! What takes longer than a request may wait, and the look at the disk.
 
-use std::sync::Arc;
+use std::path::PathBuf;
+use std::time::{Duration, SystemTime};
 
-use inbetween::pipeline::{DrawingFiles, Workbench};
+use inbetween::pipeline::Workbench;
+use inbetween::scene::Scene;
 
 use super::problem::Problem;
 use super::session::Session;
+
+/// The time between two looks at the disk.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(400);
 
 /// Computes what is wanted, the newest first, for as long as the process lives.
 pub(crate) fn run(session: &Session) {
     loop {
         let (wanted, shown) = session.next_wanted();
         let make = || match &shown.bench {
-            Some(bench) => bench.edited(&wanted.scene, DrawingFiles::Unchanged),
+            Some(bench) => bench.edited(&wanted.scene, wanted.files),
             None => Workbench::new(&wanted.scene),
         };
         let made = std::panic::catch_unwind(std::panic::AssertUnwindSafe(make));
         let made = match made {
-            Ok(Ok(bench)) => Ok(Arc::new(bench)),
+            Ok(Ok(bench)) => Ok(bench),
             Ok(Err(error)) => Err(Problem::from(&error)),
             Err(_) => Err(Problem::new("this scene failed inside inbetween; undo the last edit")),
         };
         session.show(&wanted, made);
+    }
+}
+
+/// What tells a file from an older one of the same name.
+type Stamp = (PathBuf, Option<(u64, Option<SystemTime>)>);
+
+/// Looks at the scene file and the drawings again and again, for as long as the process lives.
+pub(crate) fn watch(session: &Session) {
+    let mut known: Vec<Stamp> = Vec::new();
+    loop {
+        std::thread::sleep(BETWEEN_LOOKS);
+        session.look_at_file();
+        let Some(scene) = session.shown().scene.clone() else {
+            continue;
+        };
+        let now = stamps(&scene);
+        let has_changed = |stamp: &Stamp| known.iter().any(|old| old.0 == stamp.0 && old.1 != stamp.1);
+        if now.iter().any(has_changed) {
+            session.reread_drawings();
+        }
+        known = now;
+    }
+}
+
+fn stamps(scene: &Scene) -> Vec<Stamp> {
+    let folder = scene.file.parent().map(PathBuf::from).unwrap_or_default();
+    let of = |scene: &Scene| -> Vec<Stamp> {
+        let drawn = scene.drawn_poses().into_iter();
+        let files = drawn.filter_map(|pose| Some(folder.join(&scene.drawing_of(pose)?.1.file)));
+        files
+            .map(|file| {
+                let data = std::fs::metadata(&file).ok();
+                let stamp = data.map(|data| (data.len(), data.modified().ok()));
+                (file, stamp)
+            })
+            .collect()
+    };
+    if scene.layers.is_empty() {
+        of(scene)
+    } else {
+        scene.layers.iter().flat_map(|layer| of(&layer.scene)).collect()
     }
 }

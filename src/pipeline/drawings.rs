@@ -41,6 +41,14 @@ pub(super) fn sharpen(scene: &Scene, drawings: &mut [Drawing], frame_scale: f64)
     sharper.into_iter().collect()
 }
 
+/// Reads the drawing of one pose that has one of its own, by its index.
+///
+/// # Errors
+/// As [`read_drawings`].
+pub fn read_drawing_of(scene: &Scene, pose: usize) -> Result<Drawing, PipelineError> {
+    read_drawing(scene, pose, None)
+}
+
 /// The drawing of pose `pose`; a vector drawing has `pixels_per_unit` in its picture.
 fn read_drawing(scene: &Scene, pose: usize, pixels_per_unit: Option<f64>) -> Result<Drawing, PipelineError> {
     let path = scene.source_path(pose)?;

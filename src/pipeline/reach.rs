@@ -86,6 +86,14 @@ impl ShapePoint {
         Some(Self { anchors })
     }
 
+    /// The point that one triangle carries in all of `poses` poses.
+    #[must_use]
+    pub fn on_mesh(point: MeshPoint, poses: usize) -> Self {
+        Self {
+            anchors: vec![point; poses],
+        }
+    }
+
     /// What it is in each pose.
     pub(super) fn anchors(&self) -> &[MeshPoint] {
         &self.anchors
@@ -137,24 +145,7 @@ pub fn reach(
     targets: &[Point],
     options: &ReachOptions,
 ) -> Result<Reach, PipelineError> {
-    if points.is_empty() || points.len() != targets.len() || !targets.iter().all(|t| point::is_finite(*t)) {
-        let problem = format!("{} finite targets are needed, one a point, at least one", points.len());
-        return Err(PipelineError::stage(&[], None, problem));
-    }
-    let mut search = Search {
-        weights,
-        blend,
-        points,
-        targets,
-        low: Vec::new(),
-        high: Vec::new(),
-        size: 0.0,
-        at_place: Vec::new(),
-        positions: Vec::new(),
-        scratch: blend.scratch(),
-        evaluations: 0,
-    };
-    search.set_box(places, weights.dimension(), options.beyond);
+    let mut search = Search::new(weights, blend, places, points, targets, options)?;
     let mut looked_at: Vec<(f64, Vec<f64>)> = Vec::new();
     let count = if search.size > 0.0 {
         options.places * weights.dimension()
@@ -186,17 +177,31 @@ pub fn reach(
         }
     }
     let (_, _, at) = best.ok_or_else(|| PipelineError::stage(&[], None, "there is no pose"))?;
-    let residuals = search.residuals(&at)?;
-    let reached = (residuals.chunks_exact(2).zip(targets))
-        .map(|(r, target)| target + Point::new(r[0], r[1]))
-        .collect();
-    Ok(Reach {
-        at,
-        error: root_mean(&residuals),
-        reached,
-        weights: search.at_place,
-        evaluations: search.evaluations,
-    })
+    search.found(at)
+}
+
+/// As [`reach`], but only downhill from `start`: for a hand that drags, to whom the drawing must not jump. `options.steps` bounds the
+/// work.
+///
+/// # Errors
+/// As [`reach`].
+pub fn reach_near(
+    weights: &dyn WeightProvider,
+    blend: &RigidBlend,
+    places: &[Vec<f64>],
+    points: &[ShapePoint],
+    targets: &[Point],
+    options: &ReachOptions,
+    start: &[f64],
+) -> Result<Reach, PipelineError> {
+    let mut search = Search::new(weights, blend, places, points, targets, options)?;
+    // Where it is, the search may stay, however far outside that is.
+    for (d, at) in start.iter().enumerate().take(search.low.len()) {
+        search.low[d] = search.low[d].min(*at);
+        search.high[d] = search.high[d].max(*at);
+    }
+    let (_, at) = search.refined(start.to_vec(), options.steps)?;
+    search.found(at)
 }
 
 /// As [`reach`], for a scene and the names of its landmarks: those on the outline and points inside.
@@ -263,7 +268,51 @@ struct Search<'a> {
     evaluations: usize,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn new(
+        weights: &'a dyn WeightProvider,
+        blend: &'a RigidBlend,
+        places: &[Vec<f64>],
+        points: &'a [ShapePoint],
+        targets: &'a [Point],
+        options: &ReachOptions,
+    ) -> Result<Self, PipelineError> {
+        if points.is_empty() || points.len() != targets.len() || !targets.iter().all(|t| point::is_finite(*t)) {
+            let problem = format!("{} finite targets are needed, one a point, at least one", points.len());
+            return Err(PipelineError::stage(&[], None, problem));
+        }
+        let mut search = Self {
+            weights,
+            blend,
+            points,
+            targets,
+            low: Vec::new(),
+            high: Vec::new(),
+            size: 0.0,
+            at_place: Vec::new(),
+            positions: Vec::new(),
+            scratch: blend.scratch(),
+            evaluations: 0,
+        };
+        search.set_box(places, weights.dimension(), options.beyond);
+        Ok(search)
+    }
+
+    /// What is reached at a place.
+    fn found(mut self, at: Vec<f64>) -> Result<Reach, PipelineError> {
+        let residuals = self.residuals(&at)?;
+        let reached = (residuals.chunks_exact(2).zip(self.targets))
+            .map(|(r, target)| target + Point::new(r[0], r[1]))
+            .collect();
+        Ok(Reach {
+            at,
+            error: root_mean(&residuals),
+            reached,
+            weights: self.at_place,
+            evaluations: self.evaluations,
+        })
+    }
+
     fn set_box(&mut self, places: &[Vec<f64>], dimension: usize, beyond: f64) {
         let fold = |start: f64, pick: fn(f64, f64) -> f64| -> Vec<f64> {
             (0..dimension)

@@ -15,6 +15,65 @@ const SUM_TOLERANCE: f64 = 1e-6;
 /// [`PipelineError::Stage`], naming poses, if the layout allows no weights, or if the scene asks for what only the other
 /// provider has.
 pub fn weight_provider(scene: &Scene, provider: Option<Provider>) -> Result<Box<dyn WeightProvider>, PipelineError> {
+    Ok(match editable_weights(scene, provider)? {
+        EditableWeights::Biharmonic(weights) => weights,
+        EditableWeights::Rbf(weights) => weights,
+    })
+}
+
+/// Weights whose poses can be moved, which takes a small part of the time that new ones would.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub enum EditableWeights {
+    /// Biharmonic weights.
+    Biharmonic(Box<BiharmonicWeights>),
+    /// Radial weights.
+    Rbf(Box<RbfWeights>),
+}
+
+impl EditableWeights {
+    /// Moves a pose. On an error nothing has changed.
+    ///
+    /// # Errors
+    /// [`WeightError`] as for new weights.
+    pub fn move_pose(&mut self, pose: usize, at: &[f64]) -> Result<(), WeightError> {
+        match self {
+            Self::Biharmonic(weights) => weights.move_pose(pose, at).map(drop),
+            Self::Rbf(weights) => weights.move_pose(pose, at),
+        }
+    }
+
+    fn provider(&self) -> &dyn WeightProvider {
+        match self {
+            Self::Biharmonic(weights) => weights.as_ref(),
+            Self::Rbf(weights) => weights.as_ref(),
+        }
+    }
+}
+
+impl WeightProvider for EditableWeights {
+    fn pose_count(&self) -> usize {
+        self.provider().pose_count()
+    }
+
+    fn dimension(&self) -> usize {
+        self.provider().dimension()
+    }
+
+    fn weights(&self, at: &[f64], weights: &mut Vec<f64>) -> Result<(), WeightError> {
+        self.provider().weights(at, weights)
+    }
+
+    fn weights_of_many(&self, places: &[f64], weights: &mut Vec<f64>) -> Result<(), WeightError> {
+        self.provider().weights_of_many(places, weights)
+    }
+}
+
+/// As [`weight_provider`], for weights that will be edited.
+///
+/// # Errors
+/// As [`weight_provider`].
+pub fn editable_weights(scene: &Scene, provider: Option<Provider>) -> Result<EditableWeights, PipelineError> {
     let places: Vec<Vec<f64>> = scene.poses.iter().map(|pose| pose.at.clone()).collect();
     let pseudo_poses: Vec<PseudoPose> = scene
         .pseudo_poses
@@ -26,7 +85,7 @@ pub fn weight_provider(scene: &Scene, provider: Option<Provider>) -> Result<Box<
         .collect();
     let refusal = |message: String| PipelineError::stage(&[], None, format!("pose space: {message}"));
     let settings = &scene.pose_space;
-    let built: Result<Box<dyn WeightProvider>, WeightError> = match provider.unwrap_or(scene.pose_space.provider) {
+    let built: Result<EditableWeights, WeightError> = match provider.unwrap_or(scene.pose_space.provider) {
         Provider::Biharmonic => {
             let options = BiharmonicOptions {
                 epsilon: settings.epsilon,
@@ -38,7 +97,7 @@ pub fn weight_provider(scene: &Scene, provider: Option<Provider>) -> Result<Box<
                 pseudo_poses,
                 ..BiharmonicOptions::default()
             };
-            BiharmonicWeights::new(&places, &options).map(|w| Box::new(w) as _)
+            BiharmonicWeights::new(&places, &options).map(|w| EditableWeights::Biharmonic(Box::new(w)))
         }
         Provider::Rbf => {
             if !settings.walls.is_empty() || settings.range != WeightRange::Free {
@@ -53,7 +112,7 @@ pub fn weight_provider(scene: &Scene, provider: Option<Provider>) -> Result<Box<
                 },
                 pseudo_poses,
             };
-            RbfWeights::new(&places, &options).map(|w| Box::new(w) as _)
+            RbfWeights::new(&places, &options).map(|w| EditableWeights::Rbf(Box::new(w)))
         }
     };
     let name = |pose: usize| match scene.poses.get(pose) {

@@ -20,12 +20,11 @@ use rayon::prelude::*;
 use super::figure::{self, Figure, Posed};
 use super::layer::{self, LayerShape, Part, PosedLayer};
 use super::layout::placed;
-use super::{MappingReport, PipelineError, map_drawings, read_drawings, weight_provider};
+use super::{EditableWeights, MappingReport, PipelineError, editable_weights, landmarks, map_drawings, read_drawings};
 use crate::input::Drawing;
 use crate::math::Point;
 use crate::render::Camera;
 use crate::scene::{DrawnSource, Layout, PoseSource, Scene};
-use crate::weights::WeightProvider;
 
 /// Whether the drawings' files are as they were.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,7 +44,7 @@ pub struct Workbench {
     scene: Scene,
     layers: Vec<LayerWork>,
     figure: Arc<Figure>,
-    weights: Arc<dyn WeightProvider>,
+    weights: Arc<EditableWeights>,
     /// Whether they are those that the scene would have by itself, not others that were given.
     weights_are_own: bool,
     camera: Camera,
@@ -79,7 +78,7 @@ impl Workbench {
     /// The same shapes with other weights, of `scene`, which is laid out and differs in what weights are made of alone. The
     /// camera stays.
     #[must_use]
-    pub fn reweighted(&self, scene: &Scene, weights: Arc<dyn WeightProvider>) -> Self {
+    pub fn reweighted(&self, scene: &Scene, weights: Arc<EditableWeights>) -> Self {
         Self {
             scene: scene.clone(),
             weights,
@@ -179,6 +178,14 @@ impl Workbench {
         &self.layers[layer].report
     }
 
+    /// A place of a source file in the drawing as it is used, which may be reflected, and the other way round: of drawing
+    /// `drawing` of a layer, counted like [`Self::drawings`].
+    #[must_use]
+    pub fn as_used(&self, layer: usize, drawing: usize, place: Point) -> Point {
+        let scene = self.scene.layers.get(layer).map_or(&self.scene, |layer| &layer.scene);
+        landmarks::as_used(scene, self.drawings(layer), drawing, place)
+    }
+
     /// What the artist should know, one line a remark.
     #[must_use]
     pub fn notes(&self) -> &[String] {
@@ -193,7 +200,7 @@ impl Workbench {
 
     /// The weights.
     #[must_use]
-    pub fn weights(&self) -> &Arc<dyn WeightProvider> {
+    pub fn weights(&self) -> &Arc<EditableWeights> {
         &self.weights
     }
 
@@ -230,7 +237,7 @@ impl Workbench {
 }
 
 /// The weights, kept if nothing that they are made of has changed.
-fn weights_of(scene: &Scene, before: Option<&Workbench>) -> Result<Arc<dyn WeightProvider>, PipelineError> {
+fn weights_of(scene: &Scene, before: Option<&Workbench>) -> Result<Arc<EditableWeights>, PipelineError> {
     let is_same = |before: &&Workbench| {
         let was = &before.scene;
         let places = |scene: &Scene| scene.poses.iter().map(|pose| pose.at.clone()).collect::<Vec<_>>();
@@ -241,7 +248,7 @@ fn weights_of(scene: &Scene, before: Option<&Workbench>) -> Result<Arc<dyn Weigh
     };
     match before.filter(is_same) {
         Some(before) => Ok(Arc::clone(&before.weights)),
-        None => weight_provider(scene, None).map(Arc::from),
+        None => editable_weights(scene, None).map(Arc::new),
     }
 }
 
