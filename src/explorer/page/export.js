@@ -11,7 +11,7 @@ const FORMATS = [
 ];
 
 const field = (label, control) => h('label', { class: 'row' }, h('span', { class: 'label' }, label), control);
-const output = h('input', { type: 'text', id: 'export-output', spellcheck: 'false', autocomplete: 'off' });
+const output = h('input', { type: 'text', id: 'export-output', autofocus: true, spellcheck: 'false', autocomplete: 'off' });
 const format = h('select', { onchange: () => {
   const stem = output.value.replace(/\.[a-z0-9]+$/i, '');
   output.value = format.value ? `${stem}.${format.value}` : stem;

@@ -181,7 +181,7 @@ function buildKeys() {
         onclick: () => { keys.push({ time: rounded((keys.at(-1)?.time ?? -1) + 1, 3), at: store.place.map((v) => rounded(v)) }); changed('add a key'); },
       }, icon('plus'), 'Key at the probe'))),
     section('Playing',
-      row('Frames a second', numberField('Frames a second', () => animation.fps, (v) => setting('animation', 'fps', v), { step: 1 })),
+      row('Frame rate', numberField('Frames a second', () => animation.fps, (v) => setting('animation', 'fps', v), { step: 1 })),
       row('Frame size', ...[0, 1].map((d) => numberField(['Width', 'Height'][d], () => animation.size[d], (v) => setting('animation', 'size', animation.size.map((own, k) => (k === d ? Math.round(v) : own))), { step: 10 })))));
 }
 

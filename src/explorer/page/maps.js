@@ -57,7 +57,7 @@ function paintWeights(canvas, { words, cells }) {
   for (let j = 0; j < cells; j++) {
     for (let i = 0; i < cells; i++) {
       const weight = at(i, j);
-      const [rgb, amount] = weight < 0 ? [warn, Math.min(-weight * 2.5, 0.8)] : weight > 1 ? [wrong, 0.55] : [accent, weight * 0.62];
+      const [rgb, amount] = weight < 0 ? [warn, Math.min(-weight * 1.1, 0.5)] : weight > 1 ? [wrong, Math.min(0.35 + (weight - 1), 0.7)] : [accent, weight * 0.62];
       image.data.set([...rgb, 255 * amount], 4 * ((cells - 1 - j) * cells + i));
     }
   }

@@ -52,7 +52,10 @@ function build() {
       const source = `api/drawing?layer=${store.layer}&pose=${pose.pose}&max=640&v=${store.state.revisions.pictures}`;
       layers.picture.append(s('image', { href: source, x: origin[0], y: origin[1], width: width / scale, height: height / scale, preserveAspectRatio: 'none' }));
     }
+    cell.view = box;
     set(drawing, { viewBox: box.join(' ') });
+    drawing.addEventListener('wheel', (event) => zoomCell(event, cell), { passive: false });
+    drawing.addEventListener('dblclick', (event) => event.target.closest('.mark') || showBox(cell, cell.box));
     drawing.addEventListener('pointerdown', (event) => press(event, cell));
     return cell;
   });
@@ -71,6 +74,23 @@ function bounds(pose) {
   const [left, top, right, bottom] = [Math.min(...x), Math.min(...y), Math.max(...x), Math.max(...y)];
   const room = 0.07 * Math.max(right - left, bottom - top);
   return points.length ? [left - room, top - room, right - left + 2 * room, bottom - top + 2 * room] : [0, 0, 100, 100];
+}
+
+function showBox(cell, view) {
+  cell.view = view;
+  set(cell.drawing, { viewBox: view.join(' ') });
+  draw();
+}
+
+/** Around the pointer, never farther than the whole drawing. */
+function zoomCell(event, cell) {
+  event.preventDefault();
+  const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(cell.drawing.getScreenCTM().inverse());
+  const [left, top, w, h_] = cell.view;
+  const factor = clamp(Math.exp(event.deltaY * 0.0016), (0.04 * cell.box[2]) / w, cell.box[2] / w);
+  const x = clamp(point.x - (point.x - left) * factor, cell.box[0], cell.box[0] + cell.box[2] - w * factor);
+  const y = clamp(point.y - (point.y - top) * factor, cell.box[1], cell.box[1] + cell.box[3] - h_ * factor);
+  showBox(cell, [x, y, w * factor, h_ * factor]);
 }
 
 /** As many columns as make the drawings largest. */
@@ -92,7 +112,7 @@ function arrange() {
 
 /** Drawing units of one CSS pixel in a cell. */
 const unit = (cell) => {
-  const [, , w, h_] = cell.box;
+  const [, , w, h_] = cell.view;
   return Math.max(w / Math.max(cell.drawing.clientWidth, 1), h_ / Math.max(cell.drawing.clientHeight, 1));
 };
 
@@ -110,25 +130,46 @@ const draw = onceAFrame(() => {
     layers.outline.append(...salient(pose, px));
     layers.mesh.replaceChildren(...(showMesh && data.shape > 0 ? [meshPath(index, px)] : []));
     const links = data.links ?? [];
-    layers.links.replaceChildren(...links.flatMap((link, k) => (link.landmark ? [] : numbered(link.at[index], k, links.length, px))));
+    const roomy = perimeter(pose.outline ?? []) / px / Math.max(links.length, 1) > 24;
+    layers.links.replaceChildren(...links.flatMap((link, k) => (link.landmark ? [] : numbered(link.at[index], k, links.length, px, roomy))));
     layers.marks.replaceChildren(...marks(cell, px));
     cell.warning.replaceChildren(...(pose.looks_mirrored ? [icon('warn'), 'looks mirrored'] : []));
   }
   drawTray();
 });
 
+/** The link or landmark under the pointer, shown on all drawings. */
+let pointed = null;
+function point(target) {
+  const link = target?.closest?.('[data-link]');
+  const mark = target?.closest?.('[data-landmark]');
+  const now = link ? Number(link.dataset.link) : mark ? mark.dataset.landmark : null;
+  if (now === pointed) return;
+  pointed = now;
+  draw();
+}
+root.addEventListener('pointerover', (event) => event.buttons === 0 && point(event.target));
+root.addEventListener('pointerleave', () => point(null));
+
+function perimeter(flat) {
+  let sum = 0;
+  for (let k = 0; k < flat.length; k += 2) sum += Math.hypot(flat[(k + 2) % flat.length] - flat[k], flat[(k + 3) % flat.length] - flat[k + 1]);
+  return sum;
+}
+
 const pairs = (flat) => Array.from({ length: flat.length / 2 }, (_, k) => [flat[2 * k], flat[2 * k + 1]]);
 
 const salient = (pose, px) => (pose.salient ?? []).map(({ at: [x, y] }) => s('circle', { class: 'salient', cx: x, cy: y, r: 2 * px, 'stroke-width': px }));
 
-function numbered(at, k, count, px) {
+function numbered(at, k, count, px, roomy) {
   if (!at) return [];
+  const shown = roomy || pointed === k;
   const [x, y] = at;
   const label = s('text', { x, y: y + 3.1 * px, 'font-size': 8.5 * px, 'text-anchor': 'middle' });
   label.textContent = k + 1;
-  const disc = s('circle', { cx: x, cy: y, r: 7 * px });
+  const disc = s('circle', { cx: x, cy: y, r: (shown ? (pointed === k ? 9 : 7) : 3.5) * px });
   disc.style.fill = hue(k, count);
-  return [s('g', { class: 'link' }, disc, label)];
+  return [s('g', { class: 'link', 'data-link': k }, disc, shown ? label : null)];
 }
 
 function meshPath(index, px) {
@@ -166,13 +207,18 @@ let holding = null;
 const held = (name, cell) => (holding?.name === name && holding.cell === cell.index ? holding.at : null);
 
 function mark(cell, name, [x, y], px, kind) {
-  const r = (name === chosen || name === null ? 6.5 : 4.5) * px;
+  const marked = name !== null && (name === chosen || name === pointed);
+  const r = (marked || name === null ? 7 : 4.5) * px;
   const shape = s('path', { d: `M${x} ${y - r}L${x + r} ${y}L${x} ${y + r}L${x - r} ${y}Z`, 'stroke-width': 1.5 * px });
+  const link = (data.links ?? []).findIndex((other) => other.landmark === name && name !== null);
+  if (link >= 0) shape.style.setProperty(kind === 'given' ? 'fill' : 'stroke', hue(link, data.links.length));
   const problem = name && (store.state.problems ?? []).some((p) => p.landmark === name);
   const group = s('g', { class: `mark ${kind}${name !== null && name === chosen ? ' chosen' : ''}${problem ? ' wrong' : ''}`, 'data-landmark': name ?? '' }, s('circle', { class: 'reach', cx: x, cy: y, r: 9 * px }), shape, s('title', {}, name ?? 'New landmark'));
-  if (name !== null && name === chosen) {
+  if (marked) {
     const label = s('text', { class: 'name', x: x + 10 * px, y: y + 4 * px, 'font-size': 11 * px, 'stroke-width': 3 * px });
-    label.textContent = name;
+    label.textContent = link >= 0 ? `${link + 1} ${name}` : name;
+    // To the side where there is room.
+    if (x > cell.view[0] + 0.55 * cell.view[2]) set(label, { 'text-anchor': 'end', x: x - 10 * px });
     group.append(label);
   }
   return group;

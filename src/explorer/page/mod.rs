@@ -48,6 +48,7 @@ const MODULES: &[PageFile] = modules![
     "shaders.js",
     "state.js",
     "theme.js",
+    "thumbnail.js",
     "timeline.js",
     "toasts.js",
     "weights.js",

@@ -4,6 +4,7 @@ import { byId, clamp, follow, h, onceAFrame, s, set, short } from './dom.js';
 import { numberField, segments, toggle } from './controls.js';
 import { niceStep, PadView, shownPlane } from './plane.js';
 import { paintMap, legend } from './maps.js';
+import { drawThumbnail } from './thumbnail.js';
 import { recordSample, recordStart, recordStop, recording } from './recorder.js';
 
 /** Pixels that a pointer may move before a press becomes a drag. */
@@ -94,9 +95,7 @@ function drawProbe() {
 const thumbnails = new Map();
 
 function thumbnail(pose, index) {
-  const picture = h('img', { alt: '', draggable: 'false' });
-  picture.addEventListener('error', () => picture.classList.add('hidden'));
-  picture.addEventListener('load', () => picture.classList.remove('hidden'));
+  const picture = h('canvas', { 'aria-hidden': 'true' });
   const button = h('button', { type: 'button', class: 'pose', 'data-pose': pose.name }, picture, h('span', { class: 'name' }));
   button.addEventListener('pointerdown', (event) => dragPose(event, button));
   button.addEventListener('dblclick', () => moveTo(store.scene.poses[index].at.slice()));
@@ -182,9 +181,12 @@ function drawPoses() {
       poses.append(thumbnails.get(pose.name));
     }
     const element = thumbnails.get(pose.name);
-    const source = `api/drawing?layer=${pose.layers[0] ?? 0}&pose=${index}&max=96&v=${version}`;
+    const source = `api/drawing?layer=${pose.layers[0] ?? 0}&pose=${index}&max=256&v=${version}`;
     const picture = element.firstChild;
-    if (picture.getAttribute('src') !== source) picture.src = source;
+    if (picture.dataset.source !== source) {
+      picture.dataset.source = source;
+      drawThumbnail(picture, source);
+    }
     element.lastChild.textContent = pose.name;
     element.classList.toggle('chosen', store.pose === index);
     element.classList.toggle('copy', pose.kind === 'deformed');
@@ -270,9 +272,9 @@ export function showPath(places) {
 
 // What stands above and below.
 
-const map = segments('What the plane shows', [['plain', 'Plane'], ['weight', 'Weight'], ['validity', 'Validity']], () => store.view.map, (value) => look({ map: value }));
+const map = segments('What the plane shows', [['plain', 'Plain'], ['weight', 'Weight'], ['validity', 'Validity']], () => store.view.map, (value) => look({ map: value }));
 const snap = toggle('snap', 'Snap to the grid and to poses (hold Alt for none)', () => store.view.snap, (value) => look({ snap: value }));
-byId('pad-tools').append(h('h2', {}, 'Pose space'), h('span', { class: 'grow' }), map, snap);
+byId('pad-tools').append(h('h2', {}, 'Plane'), h('span', { class: 'grow' }), map, snap);
 pad.append(canvas, lines, poses, probe, caption.element);
 
 const fields = byId('place');

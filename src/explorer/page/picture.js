@@ -100,7 +100,7 @@ function draw() {
   const shown = handled() ?? store.frame;
   if (shown.layers.length === painter.layers.length) {
     painter.frame(shown, { inLight });
-    if (store.view.mesh) painter.wires(shown, { line: styled('--accent', 0.55), wrong: styled('--wrong', 1), thickness: 0.35 * ratio });
+    if (store.view.mesh) painter.wires(shown, { line: [0.2 * 0.8, 0.33 * 0.8, 0.85 * 0.8, 0.8], wrong: [0.82, 0.18, 0.15, 1], thickness: 0.35 * ratio });
   }
   drawHandles();
   note.textContent = '';

@@ -193,7 +193,7 @@ function drawGesture() {
   recordButton.setAttribute('aria-pressed', String(isArmed() || recording()));
   hint.textContent = recording() ? 'Recording… let go to end the gesture.'
     : isArmed() ? 'Press in the plane and drag: the gesture is recorded as you make it.'
-      : store.scene?.animation?.own_keys ? `${store.scene.animation.keys.length} keys` : 'The path visits every pose. Record a gesture, or add keys.';
+      : store.scene?.animation?.own_keys ? `${store.scene.animation.keys.length} keys. Drag one to move it in time; record to replace them.` : 'The path visits every pose. Record a gesture, or add keys.';
   if (!store.gesture) {
     built = false;
     return;
