@@ -1,0 +1,452 @@
+//! `inbetween explore`: who is answered, what, and what becomes of the scene file.
+
+#![cfg(feature = "explorer")]
+
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use inbetween::math::Point;
+use inbetween::pipeline::Character;
+use inbetween::scene::Scene;
+use serde_json::{Value, json};
+
+/// How long anything may take on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+fn inbetween() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_inbetween"))
+}
+
+/// A running explorer of a copy of a scene; ended when dropped.
+struct Explorer {
+    child: Child,
+    folder: tempfile::TempDir,
+    port: u16,
+    token: String,
+}
+
+impl Drop for Explorer {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// An answer.
+struct Answer {
+    status: u16,
+    head: String,
+    body: Vec<u8>,
+}
+
+impl Answer {
+    fn json(&self) -> Value {
+        serde_json::from_slice(&self.body).unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&self.body)))
+    }
+
+    fn words(&self) -> Vec<u32> {
+        assert_eq!(self.status, 200, "{}", String::from_utf8_lossy(&self.body));
+        let words = self.body.chunks_exact(4);
+        words.map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]])).collect()
+    }
+}
+
+fn floats(words: &[u32]) -> Vec<f32> {
+    words.iter().map(|word| f32::from_bits(*word)).collect()
+}
+
+impl Explorer {
+    /// Explores a copy of `data/NAME`, with its text changed.
+    fn of(name: &str, change: impl FnOnce(String) -> String) -> Self {
+        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(name);
+        let folder = tempfile::tempdir().expect("a folder");
+        for entry in std::fs::read_dir(data).expect("the data") {
+            let entry = entry.expect("an entry");
+            std::fs::copy(entry.path(), folder.path().join(entry.file_name())).expect("copied");
+        }
+        let scene = folder.path().join("scene.toml");
+        let text = change(std::fs::read_to_string(&scene).expect("readable"));
+        std::fs::write(&scene, text).expect("written");
+        let mut child = inbetween()
+            .args(["explore", "scene.toml", "--no-open"])
+            .current_dir(folder.path())
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("it starts");
+        let mut address = String::new();
+        let printed = child.stdout.take().expect("piped");
+        BufReader::new(printed).read_line(&mut address).expect("an address");
+        let rest = address.trim().strip_prefix("http://127.0.0.1:").expect("on this machine");
+        let (port, token) = rest.split_once('/').expect("a token");
+        Self {
+            child,
+            folder,
+            port: port.parse().expect("a port"),
+            token: token.trim_end_matches('/').to_owned(),
+        }
+    }
+
+    fn scene(&self) -> PathBuf {
+        self.folder.path().join("scene.toml")
+    }
+
+    fn text(&self) -> String {
+        std::fs::read_to_string(self.scene()).expect("readable")
+    }
+
+    /// Sends these very lines.
+    fn raw(&self, head: &str, body: &str) -> Answer {
+        let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("it listens");
+        stream.set_read_timeout(Some(PATIENCE)).expect("set");
+        write!(stream, "{head}Connection: close\r\nContent-Length: {}\r\n\r\n{body}", body.len()).expect("sent");
+        let mut bytes = Vec::new();
+        stream.read_to_end(&mut bytes).expect("an answer");
+        let end = bytes.windows(4).position(|w| w == b"\r\n\r\n").expect("a head");
+        let head = String::from_utf8(bytes[..end].to_vec()).expect("text");
+        let status = head.split(' ').nth(1).and_then(|s| s.parse().ok()).expect("a status");
+        Answer {
+            status,
+            head,
+            body: bytes[end + 4..].to_vec(),
+        }
+    }
+
+    fn get(&self, route: &str) -> Answer {
+        let head = format!("GET /{}/{route} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\n", self.token, self.port);
+        self.raw(&head, "")
+    }
+
+    fn post(&self, route: &str, body: &Value) -> Answer {
+        let head = format!(
+            "POST /{}/{route} HTTP/1.1\r\nHost: localhost:{}\r\nOrigin: http://localhost:{}\r\nContent-Type: application/json\r\n",
+            self.token, self.port, self.port
+        );
+        self.raw(&head, &body.to_string())
+    }
+
+    /// The first state of which this is true.
+    fn state_when(&self, is_it: impl Fn(&Value) -> bool) -> Value {
+        let start = Instant::now();
+        let mut state = self.get("api/state").json();
+        while !is_it(&state) {
+            assert!(start.elapsed() < PATIENCE, "still {state}");
+            state = self.get(&format!("api/state?after={}", state["seq"])).json();
+        }
+        state
+    }
+
+    /// When everything is computed.
+    fn settled(&self) -> Value {
+        self.state_when(|state| state["working"] == false)
+    }
+
+    fn weights(&self, place: &str) -> Vec<f64> {
+        let answer = self.get(&format!("api/weights?at={place}")).json();
+        serde_json::from_value(answer[0]["weights"].clone()).expect("weights")
+    }
+
+    fn edit(&self, ops: Value) -> Answer {
+        self.post("api/edit", &json!({ "ops": ops }))
+    }
+}
+
+/// The weights that the command gives.
+fn command_weights(scene: &Path, place: &str) -> Vec<f64> {
+    let output = inbetween().args(["weights"]).arg(scene).arg(format!("--at={place}")).output().expect("it runs");
+    assert!(output.status.success());
+    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    serde_json::from_value(answer["weights"].clone()).expect("weights")
+}
+
+fn as_it_is(text: String) -> String {
+    text
+}
+
+#[test]
+fn only_the_own_page_is_answered() {
+    let explorer = Explorer::of("clown", as_it_is);
+    let page = explorer.get("");
+    assert_eq!(page.status, 200);
+    assert!(page.head.contains("default-src 'self'") && !page.head.to_lowercase().contains("access-control"), "{}", page.head);
+    let (port, token) = (explorer.port, &explorer.token);
+    let own = format!("Host: 127.0.0.1:{port}\r\n");
+    for (request, headers) in [
+        ("GET /".to_owned(), own.clone()),
+        ("GET /api/state".to_owned(), own.clone()),
+        ("GET /00000000000000000000000000000000/api/state".to_owned(), own.clone()),
+        (format!("GET /{token}/api/state"), String::new()),
+        (format!("GET /{token}/api/state"), format!("Host: evil.example:{port}\r\n")),
+        (format!("GET /{token}/api/state"), format!("{own}Origin: http://evil.example\r\n")),
+        (format!("GET /{token}/api/state"), format!("{own}Sec-Fetch-Site: cross-site\r\n")),
+        (format!("POST /{token}/api/undo"), format!("{own}Origin: null\r\nContent-Type: application/json\r\n")),
+    ] {
+        let answer = explorer.raw(&format!("{request} HTTP/1.1\r\n{headers}"), "");
+        assert_eq!(answer.status, 403, "{request} {headers}");
+        assert!(!String::from_utf8_lossy(&answer.body).contains(token.as_str()));
+    }
+    let plain = explorer.raw(&format!("POST /{token}/api/edit HTTP/1.1\r\n{own}Content-Type: text/plain\r\n"), "{}");
+    assert_eq!(plain.status, 415);
+    assert_eq!(explorer.get("../../etc/passwd").status, 404);
+    assert_eq!(explorer.get("api/nothing").status, 404);
+    assert_eq!(explorer.get("api/edit").status, 405);
+    assert_eq!(explorer.post("api/undo", &json!({})).status, 409);
+}
+
+#[test]
+fn frames_are_those_of_the_command() {
+    for name in ["clown", "bear"] {
+        let explorer = Explorer::of(name, as_it_is);
+        assert_eq!(explorer.settled()["problems"], json!([]));
+        let scene = Scene::open(&explorer.scene()).expect("a scene");
+        let character = Character::new(&scene, scene.animation.size.map(|side| side as usize)).expect("a character");
+        for place in [[0.3, 0.0], [0.8, 0.4]] {
+            let place = &place[..scene.dimension()];
+            let text = place.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+            let words = explorer.get(&format!("api/frame?at={text}&silhouette=1")).words();
+            let posed = character.posed_at(place).expect("posed");
+            let (poses, layers) = (words[3] as usize, words[4] as usize);
+            assert_eq!((words[0] as usize, poses, layers), (4 * words.len(), scene.poses.len(), posed.layers.len()));
+            assert_eq!(words[5] as usize, posed.flipped());
+            let order: Vec<usize> = words[6 + 2 * poses..][..layers].iter().map(|k| *k as usize).collect();
+            assert_eq!(order, posed.order);
+            let mut at = 6 + 2 * poses + layers;
+            for (layer, shape) in posed.layers.iter().zip(character.layers()) {
+                let [v, p, k, t, r] = [0, 1, 2, 3, 4].map(|i| words[at + i] as usize);
+                assert_eq!((v, p), (layer.positions.len(), layer.weights.len()));
+                assert_eq!(t, shape.mapping().poses.topology().triangles().len());
+                assert_eq!(floats(&words[at + 5..=at + 5]), [layer.opacity as f32]);
+                let wanted: Vec<f32> = layer.positions.iter().flat_map(|q| [q.x as f32, q.y as f32]).collect();
+                assert_eq!(floats(&words[at + 6..][..2 * v]), wanted, "{name} at {place:?}");
+                let textures = floats(&words[at + 6 + 2 * v + p..][..k]);
+                assert!((textures.iter().sum::<f32>() - 1.0).abs() < 1e-5);
+                at += 6 + 2 * v + p + k + t.div_ceil(32);
+                for _ in 0..r {
+                    at += 1 + 2 * words[at] as usize;
+                }
+            }
+            assert_eq!(at, words.len());
+        }
+        let camera = &explorer.get("api/scene").json()["camera"];
+        let origin = character.camera().to_pixels(Point::zeros());
+        assert_eq!((camera["scale"].as_f64(), camera["shift"][0].as_f64()), (Some(character.camera().scale()), Some(origin.x)));
+        let mesh = explorer.get("api/mesh").words();
+        assert_eq!(mesh[0] as usize, character.layers()[0].mapping().poses.topology().vertex_count());
+        let picture = explorer.get("api/texture?layer=0&index=0&kind=drawing");
+        assert_eq!(&picture.body[1..4], b"PNG");
+        assert_eq!(&explorer.get("api/drawing?pose=1&max=64").body[1..4], b"PNG");
+        assert_eq!(explorer.get("api/frame?at=nowhere").status, 400);
+        assert_eq!(explorer.get("api/frame?at=1,2,3,4,5").status, 400);
+        assert_eq!(explorer.get("api/frame").status, 400);
+    }
+}
+
+#[test]
+fn an_edit_is_saved_and_undo_gives_the_bytes_back() {
+    let explorer = Explorer::of("bear", |text| text.replace("version = 1", "version = 1   # kept\r"));
+    let before = explorer.text();
+    let name = explorer.get("api/scene").json()["poses"][1]["name"].clone();
+    explorer.settled();
+    let there = explorer.weights("0.4,0.3");
+    assert_eq!(there, command_weights(&explorer.scene(), "0.4,0.3"));
+    // While it is dragged, the weights follow and the file stays.
+    let ops = json!([{"op": "move_pose", "pose": name, "at": [0.37, 0.91]}]);
+    let dragged = explorer.post("api/edit", &json!({"ops": ops, "phase": "drag"})).json();
+    assert_eq!((&dragged["dragging"], &dragged["saved"]), (&json!(true), &json!(false)));
+    let moved = explorer.weights("0.37,0.91");
+    assert!((moved[1] - 1.0).abs() < 1e-6, "{moved:?}");
+    assert_eq!(explorer.text(), before);
+    let cancelled = explorer.post("api/edit", &json!({"ops": [], "phase": "cancel"})).json();
+    assert_eq!(cancelled["dragging"], false);
+    explorer.settled();
+    assert_eq!(explorer.weights("0.4,0.3"), there);
+    // Let go, it is saved.
+    let done = explorer.edit(ops).json();
+    assert_eq!((&done["saved"], done["undo"].as_str().map(|label| label.contains("move pose"))), (&json!(true), Some(true)));
+    assert!(explorer.text().contains("[0.37, 0.91]") && explorer.text().contains("# kept"));
+    explorer.settled();
+    assert_eq!(explorer.weights("0.4,0.3"), command_weights(&explorer.scene(), "0.4,0.3"));
+    assert_eq!(explorer.post("api/undo", &json!({})).status, 200);
+    assert_eq!(explorer.text(), before);
+    assert_eq!(explorer.post("api/redo", &json!({})).status, 200);
+    assert!(explorer.text().contains("[0.37, 0.91]"));
+    // What the format refuses changes nothing.
+    let other = explorer.get("api/scene").json()["poses"][0]["at"].clone();
+    let refused = explorer.edit(json!([{"op": "move_pose", "pose": name, "at": other}]));
+    assert_eq!((refused.status, refused.json()["error"]["where"].as_str()), (409, Some("space")));
+    assert!(explorer.text().contains("[0.37, 0.91]"));
+}
+
+#[test]
+fn a_change_from_outside_is_noticed() {
+    let explorer = Explorer::of("clown", as_it_is);
+    let first = explorer.settled();
+    let before = explorer.text();
+    std::fs::write(explorer.scene(), format!("{before}\n# later\n")).expect("written");
+    explorer.state_when(|state| state["undo"] == "change from outside");
+    assert!(String::from_utf8_lossy(&explorer.get("api/text").body).contains("# later"));
+    // In the middle of a drag it is asked about.
+    let name = explorer.get("api/scene").json()["poses"][0]["name"].clone();
+    let ops = json!([{"op": "set_pose", "pose": name, "key": "turns", "value": 1}]);
+    explorer.post("api/edit", &json!({"ops": ops, "phase": "drag"}));
+    std::fs::write(explorer.scene(), format!("{before}\n# theirs\n")).expect("written");
+    explorer.state_when(|state| state["conflict"] == true);
+    explorer.edit(ops);
+    assert!(explorer.text().contains("# theirs"), "it is not overwritten");
+    let taken = explorer.post("api/conflict", &json!({"take": "theirs"})).json();
+    assert_eq!((&taken["conflict"], &taken["saved"]), (&json!(false), &json!(true)));
+    explorer.post("api/undo", &json!({}));
+    assert!(explorer.text().contains("turns = 1"), "what was here can be had back");
+    // Drawings, too.
+    let state = explorer.settled();
+    let drawing = explorer.folder.path().join("stand.png");
+    let bytes = std::fs::read(&drawing).expect("readable");
+    std::fs::write(&drawing, [bytes, vec![0]].concat()).expect("written");
+    let again = explorer.state_when(|later| later["revisions"]["pictures"] != state["revisions"]["pictures"]);
+    assert_ne!(again["revisions"]["pictures"], first["revisions"]["pictures"]);
+}
+
+#[test]
+fn landmarks_change_the_match_or_explain_themselves() {
+    let explorer = Explorer::of("clown", as_it_is);
+    let state = explorer.settled();
+    let found = explorer.get("api/correspondences?samples=16").json();
+    let (poses, links) = (found["poses"].as_array().expect("poses"), found["links"].as_array().expect("links"));
+    assert_eq!((poses.len(), found["samples"][1].as_array().map(Vec::len)), (4, Some(32)));
+    assert!(links.len() > 4 && links[0]["at"].as_array().map(Vec::len) == Some(4));
+    let names: Vec<&str> = poses.iter().filter_map(|pose| pose["name"].as_str()).collect();
+    // A link becomes a landmark that is a little off on the second pose.
+    let (a, b) = (&links[2]["at"][0], &links[3]["at"][1]);
+    let carried = explorer.post("api/carry", &json!({"pose": names[0], "at": a})).json();
+    assert_eq!(carried["kind"], "outline");
+    let off = |from: &Value, to: &Value, k: usize| {
+        let (from, to) = (from[k].as_f64().expect("x"), to[k].as_f64().expect("x"));
+        from + 0.2 * (to - from)
+    };
+    let on_second = &carried["at"][1];
+    let place = json!([off(on_second, b, 0), off(on_second, b, 1)]);
+    let added = explorer.edit(json!([{"op": "add_landmark", "at": {names[0]: a, names[1]: place}}])).json();
+    let name = added["names"][0].as_str().expect("a name").to_owned();
+    let mapped = explorer.settled();
+    if mapped["problems"] == json!([]) {
+        assert_ne!(mapped["revisions"]["shape"], state["revisions"]["shape"]);
+        assert_eq!(mapped["revisions"]["pictures"], state["revisions"]["pictures"]);
+        let placed = explorer.get("api/correspondences").json();
+        let placed = placed["landmarks"].as_array().expect("landmarks").iter().any(|l| l["name"] == name.as_str());
+        assert!(placed);
+    } else {
+        panic!("{mapped}");
+    }
+    // Far off the outline it cannot be; the mesh stays.
+    explorer.edit(json!([{"op": "move_landmark", "landmark": name, "at": {names[1]: [-500, -500]}}]));
+    let refused = explorer.settled();
+    assert_eq!(refused["problems"][0]["landmark"], name.as_str(), "{refused}");
+    assert_eq!(refused["problems"][0]["pose"], names[1]);
+    assert_eq!(refused["revisions"]["shape"], mapped["revisions"]["shape"]);
+    explorer.post("api/undo", &json!({}));
+    assert_eq!(explorer.settled()["problems"], json!([]));
+}
+
+#[test]
+fn a_broken_scene_opens_as_far_as_it_can() {
+    let explorer = Explorer::of("clown", |text| format!("{text}\n[mush]\n"));
+    let state = explorer.settled();
+    assert!(state["problems"][0]["line"].as_u64().is_some(), "{state}");
+    let scene = explorer.get("api/scene").json();
+    assert_eq!((&scene["poses"], &scene["camera"]), (&json!([]), &Value::Null));
+    assert_eq!(explorer.get("api/frame?at=0,0").status, 409);
+    // Put right outside, it opens.
+    let text = explorer.text().replace("[mush]", "");
+    std::fs::write(explorer.scene(), &text).expect("written");
+    let opened = explorer.state_when(|state| state["revisions"]["shape"] != 0);
+    assert_eq!(opened["problems"], json!([]));
+    drop(explorer);
+    // A drawing is missing: places and weights are there.
+    let explorer = Explorer::of("clown", |text| text.replace("cheer.png", "gone.png"));
+    let state = explorer.settled();
+    assert_eq!(state["problems"][0]["pose"], "cheer", "{state}");
+    assert_eq!(explorer.weights("0.5,0").len(), 4);
+    let drawn = explorer.get("api/correspondences").json();
+    let has_outline: Vec<bool> = (0..4).map(|k| drawn["poses"][k]["outline"].is_array()).collect();
+    assert_eq!(has_outline, [true, false, true, true]);
+}
+
+#[test]
+fn a_gesture_is_saved_and_renders() {
+    let explorer = Explorer::of("clown", as_it_is);
+    explorer.settled();
+    let samples: Vec<[f64; 3]> = (0..=60).map(|k| f64::from(k) / 60.0).map(|t| [t, t * t, 0.1 * t]).collect();
+    let fitted = explorer.post("api/gesture", &json!({"samples": samples, "tolerance": 0.01, "duration": 2})).json();
+    let keys = fitted["keys"].as_array().expect("keys");
+    assert!((2..10).contains(&keys.len()) && fitted["error"].as_f64().is_some_and(|e| e <= 0.011), "{fitted}");
+    let path = explorer.post("api/path", &json!({"keys": keys, "fps": 12, "loop": false})).json();
+    assert_eq!((path["frame_count"].as_u64(), path["duration"].as_f64()), (Some(25), Some(2.0)));
+    explorer.edit(json!([
+        {"op": "set_keys", "keys": keys, "loop": false, "fps": 12},
+        {"op": "set", "table": "animation", "key": "size", "value": [24, 32]},
+    ]));
+    let scene = Scene::open(&explorer.scene()).expect("a scene");
+    let (animation, last) = (&scene.animation, path["at"].as_array().expect("places").len() - 1);
+    assert_eq!((animation.frame_count(), animation.fps), (25, 12.0));
+    assert_eq!(json!(animation.at(animation.time_of_frame(last))), path["at"][last]);
+    assert_eq!(explorer.get("api/scene").json()["animation"]["own_keys"], true);
+    let started = explorer.post("api/export", &json!({"output": "out.gif", "frames": "1-3"})).json();
+    assert!(started["job"]["command"].as_str().is_some_and(|c| c == "inbetween render scene.toml -o out.gif --frames=1-3"));
+    let done = explorer.state_when(|state| state["job"]["state"] != "running");
+    assert_eq!((&done["job"]["state"], &done["job"]["done"]), (&json!("done"), &json!(3)), "{done}");
+    assert!(explorer.folder.path().join("out.gif").is_file());
+    // One that is cancelled leaves nothing.
+    explorer.post("api/export", &json!({"output": "long.gif", "size": [1200, 1600], "supersample": 4}));
+    assert_eq!(explorer.post("api/export", &json!({"output": "other.gif"})).status, 409);
+    assert_eq!(explorer.post("api/export/cancel", &json!({})).status, 200);
+    let cancelled = explorer.state_when(|state| state["job"]["state"] != "running");
+    assert_eq!(cancelled["job"]["state"], "cancelled");
+    let left: Vec<String> = std::fs::read_dir(explorer.folder.path())
+        .expect("a folder")
+        .filter_map(|entry| entry.expect("an entry").file_name().into_string().ok())
+        .filter(|name| name.contains("long") || name.starts_with('.'))
+        .collect();
+    assert_eq!(left, Vec::<String>::new());
+}
+
+#[test]
+fn the_drawing_can_be_taken_hold_of() {
+    let explorer = Explorer::of("bear", as_it_is);
+    explorer.settled();
+    let scene = explorer.get("api/scene").json();
+    let mesh = explorer.get("api/mesh").words();
+    let (vertices, triangles) = (mesh[0] as usize, mesh[1] as usize);
+    let first = &floats(&mesh[4 + 3 * triangles..][..2 * vertices]);
+    let layer_pose = scene["layers"][0]["poses"][0].as_u64().expect("a pose") as usize;
+    let pose = scene["poses"][layer_pose]["name"].clone();
+    let vertex = |k: usize| [f64::from(first[2 * k]), f64::from(first[2 * k + 1])];
+    // Moved all alike, it is moved.
+    let handles: Vec<Value> = [0, vertices / 2]
+        .map(|k| json!({"from": vertex(k), "to": [vertex(k)[0] + 10.0, vertex(k)[1]]}))
+        .to_vec();
+    let dragged = explorer.post("api/deform", &json!({"pose": pose, "handles": handles, "steps": 600})).words();
+    assert_eq!((dragged[0] as usize, dragged[1]), (vertices, 0));
+    for (moved, rest) in floats(&dragged[2..]).chunks_exact(2).zip(first.chunks_exact(2)) {
+        assert!((moved[0] - rest[0] - 10.0).abs() < 0.1 && (moved[1] - rest[1]).abs() < 0.1, "{moved:?} {rest:?}");
+    }
+    // A point of the drawing at one place is asked for where it is at another.
+    let positions = |place: &str| {
+        let words = explorer.get(&format!("api/frame?at={place}")).words();
+        let (poses, layers) = (words[3] as usize, words[4] as usize);
+        floats(&words[6 + 2 * poses + layers + 6..][..2 * vertices])
+    };
+    let (here, there) = (positions("0.1,0.1"), positions("0.25,0.2"));
+    let far = (0..vertices).max_by_key(|&k| (1e3 * (here[2 * k] - there[2 * k]).hypot(here[2 * k + 1] - there[2 * k + 1])) as i64);
+    let k = far.expect("a vertex");
+    let point = json!({"from": [here[2 * k], here[2 * k + 1]], "to": [there[2 * k], there[2 * k + 1]]});
+    let reached = explorer.post("api/reach", &json!({"at": [0.1, 0.1], "points": [point]})).json();
+    assert!(reached["error"].as_f64().is_some_and(|error| error < 1.0), "{reached}");
+    // And maps over the plane.
+    let grid = explorer.get("api/grid?box=-1,-1,1,1&columns=8&rows=4").words();
+    assert_eq!((grid[0], grid[1], grid.len()), (8, 4, 3 + 8 * 4 * grid[2] as usize));
+    let validity = explorer.get("api/validity?box=-1,-1,1,1&columns=4&rows=3").words();
+    assert_eq!((validity[0], validity[1], validity.len()), (4, 3, 2 + 3 * 12));
+}
