@@ -46,7 +46,7 @@ function reach(event) {
     const to = wanted;
     wanted = null;
     try {
-      const answer = await postJson('reach', { layer: hit, at: begun, points: [{ from, to }], provider: store.view.compare?.provider ?? null });
+      const answer = await postJson('reach', { layer: hit, at: begun, start: store.place, points: [{ from, to }], provider: store.view.compare?.provider ?? null });
       if (reaching) moveTo(answer.at.map((v) => rounded(v)));
     } catch (error) {
       emit('refused', error.problem ?? { message: error.message });

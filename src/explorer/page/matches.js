@@ -116,7 +116,17 @@ const unit = (cell) => {
   return Math.max(w / Math.max(cell.drawing.clientWidth, 1), h_ / Math.max(cell.drawing.clientHeight, 1));
 };
 
-const hue = (k, count) => `hsl(${Math.round((360 * k) / Math.max(count, 1))} 72% 46%)`;
+/** A colour for what lies at a place of the reference's outline: once around the circle of hues. */
+function hue(at) {
+  const outline = data.poses[data.reference]?.outline;
+  if (!outline || !at) return 'hsl(226 70% 52%)';
+  let [best, where] = [Infinity, 0];
+  for (let k = 0; k < outline.length; k += 2) {
+    const far = Math.hypot(outline[k] - at[0], outline[k + 1] - at[1]);
+    if (far < best) [best, where] = [far, k];
+  }
+  return `hsl(${Math.round((360 * where) / outline.length)} 74% 44%)`;
+}
 
 const draw = onceAFrame(() => {
   if (!data || store.view.main !== 'matches') return;
@@ -131,7 +141,7 @@ const draw = onceAFrame(() => {
     layers.mesh.replaceChildren(...(showMesh && data.shape > 0 ? [meshPath(index, px)] : []));
     const links = data.links ?? [];
     const roomy = perimeter(pose.outline ?? []) / px / Math.max(links.length, 1) > 24;
-    layers.links.replaceChildren(...links.flatMap((link, k) => (link.landmark ? [] : numbered(link.at[index], k, links.length, px, roomy))));
+    layers.links.replaceChildren(...links.flatMap((link, k) => (link.landmark ? [] : numbered(link.at[index], k, hue(link.at[data.reference]), px, roomy))));
     layers.marks.replaceChildren(...marks(cell, px));
     cell.warning.replaceChildren(...(pose.looks_mirrored ? [icon('warn'), 'looks mirrored'] : []));
   }
@@ -161,14 +171,14 @@ const pairs = (flat) => Array.from({ length: flat.length / 2 }, (_, k) => [flat[
 
 const salient = (pose, px) => (pose.salient ?? []).map(({ at: [x, y] }) => s('circle', { class: 'salient', cx: x, cy: y, r: 2 * px, 'stroke-width': px }));
 
-function numbered(at, k, count, px, roomy) {
+function numbered(at, k, colour, px, roomy) {
   if (!at) return [];
   const shown = roomy || pointed === k;
   const [x, y] = at;
   const label = s('text', { x, y: y + 3.1 * px, 'font-size': 8.5 * px, 'text-anchor': 'middle' });
   label.textContent = k + 1;
   const disc = s('circle', { cx: x, cy: y, r: (shown ? (pointed === k ? 9 : 7) : 3.5) * px });
-  disc.style.fill = hue(k, count);
+  disc.style.fill = colour;
   return [s('g', { class: 'link', 'data-link': k }, disc, shown ? label : null)];
 }
 
@@ -199,6 +209,8 @@ function marks(cell, px) {
     if (!at) continue;
     made.push(mark(cell, landmark.name, held(landmark.name, cell) ?? at, px, own ? 'given' : 'carried'));
   }
+  // What is pointed at is drawn over the others.
+  made.sort((a, b) => Number(a.classList.contains('marked')) - Number(b.classList.contains('marked')));
   if (fresh?.at[cell.pose.name]) made.push(mark(cell, null, fresh.at[cell.pose.name], px, 'fresh'));
   return made;
 }
@@ -208,12 +220,13 @@ const held = (name, cell) => (holding?.name === name && holding.cell === cell.in
 
 function mark(cell, name, [x, y], px, kind) {
   const marked = name !== null && (name === chosen || name === pointed);
-  const r = (marked || name === null ? 7 : 4.5) * px;
+  const r = (marked || name === null ? 7 : 4) * px;
   const shape = s('path', { d: `M${x} ${y - r}L${x + r} ${y}L${x} ${y + r}L${x - r} ${y}Z`, 'stroke-width': 1.5 * px });
   const link = (data.links ?? []).findIndex((other) => other.landmark === name && name !== null);
-  if (link >= 0) shape.style.setProperty(kind === 'given' ? 'fill' : 'stroke', hue(link, data.links.length));
+  const known = data.landmarks?.find((other) => other.name === name);
+  if (known?.kind === 'outline') shape.style.setProperty(kind === 'given' ? 'fill' : 'stroke', hue(known.at[data.reference]?.[0]));
   const problem = name && (store.state.problems ?? []).some((p) => p.landmark === name);
-  const group = s('g', { class: `mark ${kind}${name !== null && name === chosen ? ' chosen' : ''}${problem ? ' wrong' : ''}`, 'data-landmark': name ?? '' }, s('circle', { class: 'reach', cx: x, cy: y, r: 9 * px }), shape, s('title', {}, name ?? 'New landmark'));
+  const group = s('g', { class: `mark ${kind}${marked ? ' marked' : ''}${name !== null && name === chosen ? ' chosen' : ''}${problem ? ' wrong' : ''}`, 'data-landmark': name ?? '' }, s('circle', { class: 'reach', cx: x, cy: y, r: 9 * px }), shape, s('title', {}, name ?? 'New landmark'));
   if (marked) {
     const label = s('text', { class: 'name', x: x + 10 * px, y: y + 4 * px, 'font-size': 11 * px, 'stroke-width': 3 * px });
     label.textContent = link >= 0 ? `${link + 1} ${name}` : name;

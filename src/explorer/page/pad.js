@@ -106,7 +106,7 @@ function thumbnail(pose, index) {
       event.preventDefault();
       event.stopPropagation();
       const by = event.shiftKey ? step() / 5 : step();
-      edit([{ op: 'move_pose', pose: own.name, at: own.at.map((v, d) => (d < 2 ? rounded(v + way[d] * by, 6) : v)) }], `move pose '${own.name}'`);
+      edit([{ op: 'move_pose', pose: own.name, at: own.at.map((v, d) => (d < 2 ? rounded(v + way[d] * by, 6) : v)) }], `move pose '${own.name}'`, `arrow ${own.name}`);
     } else if (event.key === 'Enter' || event.key === ' ') {
       event.preventDefault();
       goTo(own);

@@ -136,9 +136,9 @@ export function tellRefusals(listener) {
   told = listener;
 }
 
-/** One step of undo. */
-export async function edit(ops, label) {
-  return asked('edit', { ops, label, phase: 'done' });
+/** One step of undo; of edits with the same `merge`, one after the other, all are one step. */
+export async function edit(ops, label, merge) {
+  return asked('edit', { ops, label, phase: 'done', merge });
 }
 
 export async function asked(route, body) {
