@@ -1,6 +1,7 @@
 // Dragging the drawing itself: along the plane (inverse posing), or away from it, by handles, as a new pose.
 import { postJson, postWords } from './api.js';
 import { follow, h, s, set } from './dom.js';
+import { framesOf } from './frames.js';
 import { drawingView, showBent, toDrawing, toStage } from './picture.js';
 import { edit, emit, moveTo, on, rounded, store } from './state.js';
 
@@ -14,7 +15,7 @@ let bar = null;
 export function attachHandles(on_stage) {
   stage = on_stage;
   overlay = s('svg', { class: 'overlay', 'aria-hidden': 'true' });
-  bar = h('div', { class: 'floating hidden', role: 'group', 'aria-label': 'Handles' });
+  bar = h('div', { class: 'floating upper hidden', role: 'group', 'aria-label': 'Handles' });
   stage.append(overlay, bar);
 }
 
@@ -80,11 +81,8 @@ function onMesh(layer, [x, y], points = store.frame.layers[layer].positions) {
   const { triangles } = store.meshes[layer];
   for (let t = 0; t < triangles.length; t += 3) {
     const [a, b, c] = [0, 1, 2].map((k) => triangles[t + k]);
-    const [ax, ay] = [points[2 * a], points[2 * a + 1]];
-    const [ux, uy, vx, vy] = [points[2 * b] - ax, points[2 * b + 1] - ay, points[2 * c] - ax, points[2 * c + 1] - ay];
-    const area = ux * vy - uy * vx;
-    const [p, q] = [((x - ax) * vy - (y - ay) * vx) / area, (ux * (y - ay) - uy * (x - ax)) / area];
-    if (p >= 0 && q >= 0 && p + q <= 1) return { corners: [a, b, c], parts: [1 - p - q, p, q] };
+    const parts = partsIn([a, b, c], points, x, y);
+    if (Math.min(...parts) >= 0) return { corners: [a, b, c], parts };
   }
   return null;
 }
@@ -102,20 +100,63 @@ function basePose() {
 const layerPose = (pose) => store.puppet.layers[store.layer].poses.indexOf(pose);
 
 let basis = null;
+/** A layer, a ring: how the outline of the pose is carried by the mesh. */
+let edges = [];
 /** Shows the pose that is going to be bent. */
 async function beginBend() {
   handles = [];
   basis = basePose();
+  latest = null;
+  edges = [];
   const own = layerPose(basis);
-  if (own < 0) return;
+  if (own < 0) {
+    basis = null;
+    emit('refused', { message: `the layer ${store.puppet.layers[store.layer].name} is not in this pose` });
+    return;
+  }
+  const [frame] = await framesOf('weights', [store.scene.poses.map((_, k) => Number(k === basis))]);
+  edges = (frame?.layers ?? []).map((layer, k) => layer.rings.map((ring) => carriers(k, layer.positions, ring)));
   await deform();
 }
+
+/** The points of a ring as parts of the triangles that they lie in, or nearest to. */
+function carriers(layer, points, ring) {
+  const { triangles } = store.meshes[layer];
+  const carried = [];
+  for (let k = 0; k < ring.length; k += 2) {
+    let best = { outside: Infinity };
+    for (let t = 0; t < triangles.length && best.outside > 0; t += 3) {
+      const corners = [triangles[t], triangles[t + 1], triangles[t + 2]];
+      const parts = partsIn(corners, points, ring[k], ring[k + 1]);
+      const outside = Math.max(0, -Math.min(...parts)) * (1 + Math.max(0, -Math.min(...parts)));
+      if (outside < best.outside) best = { outside, corners, parts };
+    }
+    carried.push(best);
+  }
+  return carried;
+}
+
+function partsIn([a, b, c], points, x, y) {
+  const [ax, ay] = [points[2 * a], points[2 * a + 1]];
+  const [ux, uy, vx, vy] = [points[2 * b] - ax, points[2 * b + 1] - ay, points[2 * c] - ax, points[2 * c + 1] - ay];
+  const area = ux * vy - uy * vx;
+  const [p, q] = [((x - ax) * vy - (y - ay) * vx) / area, (ux * (y - ay) - uy * (x - ax)) / area];
+  return [1 - p - q, p, q];
+}
+
+let latest = null;
+const shownBent = () => latest ?? store.meshes[store.layer].poses[layerPose(basis)];
 
 let deforming = false;
 let again = false;
 async function deform() {
   if (deforming) {
     again = true;
+    return;
+  }
+  if (handles.length === 0) {
+    latest = null;
+    showBent(bentFrame(shownBent(), 0));
     return;
   }
   deforming = true;
@@ -128,8 +169,7 @@ async function deform() {
     latest = positions;
     showBent(bentFrame(positions, inverted));
   } catch (error) {
-    if (handles.length === 0) showBent(bentFrame(store.meshes[store.layer].poses[layerPose(basis)], 0));
-    else emit('refused', error.problem ?? { message: error.message });
+    emit('refused', error.problem ?? { message: error.message });
   }
   deforming = false;
   if (again) {
@@ -138,7 +178,7 @@ async function deform() {
   }
 }
 
-/** A frame of one pose, with one layer's vertices elsewhere. Its outline is the mesh's boundary. */
+/** A frame of one pose, with one layer's vertices elsewhere. */
 function bentFrame(positions, inverted) {
   const single = (count, index) => Float32Array.from({ length: count }, (_, k) => Number(k === index));
   return {
@@ -146,7 +186,7 @@ function bentFrame(positions, inverted) {
     layers: store.puppet.layers.map((layer, k) => {
       const own = layer.poses.indexOf(basis);
       const points = k === store.layer ? positions : store.meshes[k].poses[Math.max(own, 0)];
-      const rings = store.meshes[k].rings.map((ring) => Float32Array.from(Array.from(ring).flatMap((v) => [points[2 * v], points[2 * v + 1]])));
+      const rings = (edges[k] ?? []).map((ring) => Float32Array.from(ring.flatMap((carrier) => placed(carrier, points))));
       return {
         opacity: own < 0 ? 0 : 1, positions: points, rings, inverted: new Uint32Array(0),
         textureWeights: single(layer.textures.length, layer.texture_of[Math.max(own, 0)]),
@@ -156,6 +196,7 @@ function bentFrame(positions, inverted) {
 }
 
 function bendPress(event) {
+  if (basis === null) return;
   const at = under(event);
   const view = drawingView();
   let handle = handles.find(({ to }) => Math.hypot(...toStage(to, view).map((v, d) => v - toStage(at, view)[d])) < 10);
@@ -176,9 +217,6 @@ function bendPress(event) {
     drawHandles();
   });
 }
-
-let latest = null;
-const shownBent = () => latest ?? store.meshes[store.layer].poses[layerPose(basis)];
 
 async function keep() {
   const of = store.scene.poses[basis];

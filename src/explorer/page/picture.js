@@ -78,7 +78,10 @@ function styled(name, alpha) {
 }
 
 function draw() {
-  if (store.view.main !== 'picture') return;
+  if (store.view.main !== 'picture') {
+    if (store.frame) tellWhat();
+    return;
+  }
   const ratio = devicePixelRatio;
   const [width, height] = [Math.round(stage.clientWidth * ratio), Math.round(stage.clientHeight * ratio)];
   if (width === 0 || height === 0) return;
@@ -108,11 +111,15 @@ function draw() {
   badge.classList.toggle('hidden', !(inverted > 0));
   badge.textContent = `${inverted} inverted ${inverted === 1 ? 'triangle' : 'triangles'}`;
   canvas.setAttribute('aria-label', `The drawing at ${store.place.map((v) => short(v)).join(', ')}${inverted > 0 ? `, ${inverted} triangles inverted` : ''}`);
-  // What a test waits for.
+  tellWhat();
+  emit('drawn');
+}
+
+/** What is shown, for whoever waits for it from outside. */
+function tellWhat() {
   canvas.dataset.at = store.frame.place.join(',');
   canvas.dataset.shape = store.frame.shape;
   canvas.dataset.weights = store.frame.revision;
-  emit('drawn');
 }
 
 /** A frame with a layer's mesh that is being bent by handles, if there is one. */

@@ -203,7 +203,7 @@ function drawGesture() {
     tools.replaceChildren(
       slider('Smooth', { min: 0, max: 0.5, step: 0.01 }, () => settings.smoothing, (v) => resolve({ smoothing: v }), (v) => resolve({ smoothing: v })),
       slider('Simplify', { min: 0.001, max: 0.05, step: 0.001, digits: 3 }, () => settings.tolerance, (v) => resolve({ tolerance: v }), (v) => resolve({ tolerance: v })),
-      h('label', { class: 'field' }, h('span', {}, 'Seconds'), numberField('Duration in seconds', () => store.gesture?.keys?.at(-1)?.time ?? 0, (v) => v > 0 && resolve({ duration: v }), { step: 0.1, digits: 2, id: 'gesture-seconds' })),
+      h('label', { class: 'field' }, h('span', {}, 'Seconds'), numberField('Duration in seconds', () => rounded(duration(), 2), (v) => v > 0 && resolve({ duration: v }), { step: 0.1, digits: 2, id: 'gesture-seconds' })),
       h('span', { class: 'keys faint' }), h('span', { class: 'grow' }),
       h('button', { type: 'button', onclick: discard }, 'Discard'),
       h('button', { type: 'button', class: 'main', id: 'save-gesture', onclick: keep }, 'Save to scene'));
