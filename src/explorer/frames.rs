@@ -60,7 +60,11 @@ fn stretch(request: &Request) -> Result<Option<Stretch>, Refusal> {
         Some("linear") => Some(Stretch::Linear),
         Some("limited") => Some(Stretch::Limited),
         Some("log") => Some(Stretch::Log),
-        Some(other) => return Err(Refusal::bad(format!("stretch '{other}' is none of linear, limited, log"))),
+        Some(other) => {
+            return Err(Refusal::bad(format!(
+                "stretch '{other}' is none of linear, limited, log"
+            )));
+        }
     })
 }
 

@@ -343,7 +343,13 @@ mod tests {
         let largest = |samples: &[Sample]| {
             let off = |(a, b): (&Sample, &Sample)| (a.at[0] - b.at[0]).abs();
             // At the ends there is less to take a mean of.
-            samples.iter().zip(&circle(200)).skip(15).take(170).map(off).fold(0.0, f64::max)
+            samples
+                .iter()
+                .zip(&circle(200))
+                .skip(15)
+                .take(170)
+                .map(off)
+                .fold(0.0, f64::max)
         };
         assert!(largest(&smoothed(&noisy, 0.05)) < 0.3 * largest(&noisy));
     }

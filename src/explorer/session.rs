@@ -371,6 +371,11 @@ impl Session {
         }
     }
 
+    /// Whether there is something to compute already.
+    pub(crate) fn is_busy(&self) -> bool {
+        self.lock().wanted.is_some()
+    }
+
     /// Shows what has been computed.
     pub(crate) fn show(&self, wanted: &Wanted, made: Result<Workbench, Problem>) {
         let mut state = self.lock();
@@ -391,7 +396,9 @@ impl Session {
                     bench = bench.reweighted(&with_places_of(bench.scene(), old.scene()), Arc::clone(old.weights()));
                 }
                 revisions.scene += 1;
-                revisions.weights += 1;
+                if !old.is_some_and(|old| Arc::ptr_eq(old.weights(), bench.weights()) && old.has_figure_of(&bench)) {
+                    revisions.weights += 1;
+                }
                 if !old.is_some_and(|old| old.has_pictures_of(&bench)) {
                     revisions.pictures += 1;
                 }

@@ -26,7 +26,16 @@ pub(crate) fn run(session: &Session) {
             Ok(Err(error)) => Err(Problem::from(&error)),
             Err(_) => Err(Problem::new("this scene failed inside inbetween; undo the last edit")),
         };
+        let camera_of = made.as_ref().ok().cloned();
         session.show(&wanted, made);
+        // When the shapes can be seen already.
+        if let Some(bench) = camera_of
+            && !session.is_busy()
+            && let Ok(filmed) = bench.filmed_anew()
+            && filmed.camera() != bench.camera()
+        {
+            session.show(&wanted, Ok(filmed));
+        }
     }
 }
 

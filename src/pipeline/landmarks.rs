@@ -350,8 +350,13 @@ impl Found {
     fn new(scene: &Scene, drawings: &[Drawing], measured: &[ArcLength], pose: usize, place: Point) -> Self {
         let place = as_used(scene, drawings, pose, place);
         let (nearest, distance) = measured[pose].nearest(place);
-        let corners = measured[pose].vertex_parameters().iter().copied();
-        let corner = corners.min_by(|a, b| parameter_gap(*a, nearest).total_cmp(&parameter_gap(*b, nearest)));
+        // Of the vertices, the nearer end of the edge that it lies on.
+        let corners = measured[pose].vertex_parameters();
+        let (edge, _) = measured[pose].locate(nearest);
+        let ends = [edge, (edge + 1) % corners.len()].map(|vertex| corners[vertex]);
+        let corner = ends
+            .into_iter()
+            .min_by(|a, b| parameter_gap(*a, nearest).total_cmp(&parameter_gap(*b, nearest)));
         let parameter = corner
             .filter(|t| parameter_gap(*t, nearest) <= CORNER_REACH)
             .unwrap_or(nearest);

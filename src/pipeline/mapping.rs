@@ -1,5 +1,7 @@
 //! From drawings to the N-way mapping: match, simplify, triangulate, refine.
 
+use std::sync::Arc;
+
 use super::landmarks::{self, Landmarks};
 use super::triangulation::{self, Labels, LandmarkLabel};
 use super::{MappingReport, PipelineError, Stage, deformed};
@@ -52,28 +54,112 @@ pub fn map_drawings_observed(
         let problem = format!("{} drawings for {} drawn poses", drawings.len(), drawn.poses.len());
         return Err(PipelineError::stage(&[], None, problem));
     }
-    let (mapping, mut report) = map_drawn(&drawn, drawings, begins)?;
+    let (mapping, mut report, _) = map_drawn(&drawn, drawings, None, begins)?;
     let mapping = deformed::with_copies(scene, drawings, mapping, &mut report)?;
     Ok((mapping, report))
+}
+
+/// As [`map_drawings`] for the same drawings as `before`, which the outlines' part is taken from if nothing that it is made of has
+/// changed; and that part, for the next time.
+pub(super) fn map_drawings_again(
+    scene: &Scene,
+    drawings: &[Drawing],
+    before: Option<&Arc<Boundaries>>,
+) -> Result<(Mapping, MappingReport, Arc<Boundaries>), PipelineError> {
+    let drawn = scene.only_drawn();
+    let (mapping, mut report, boundaries) = map_drawn(&drawn, drawings, before, &mut |_| ())?;
+    let mapping = deformed::with_copies(scene, drawings, mapping, &mut report)?;
+    Ok((mapping, report, boundaries))
+}
+
+/// The outlines matched and simplified, and what that was made of besides the drawings.
+#[derive(Debug)]
+pub(super) struct Boundaries {
+    on_outline: Vec<Landmark>,
+    reference: Option<usize>,
+    tolerance: f64,
+    /// Holes in one order.
+    outlines: Vec<Outline>,
+    matched: Matched,
+    /// The places of the landmarks, #landmarks x #poses.
+    pinned: Vec<Vec<f64>>,
+    simplified: Simplified,
+}
+
+impl Boundaries {
+    fn new(
+        scene: &Scene,
+        drawings: &[Drawing],
+        on_outline: &[Landmark],
+        begins: &mut dyn FnMut(Stage),
+    ) -> Result<Self, PipelineError> {
+        begins(Stage::Matching);
+        let mut outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
+        let matched = match_outlines(scene, &mut outlines, on_outline)?;
+        begins(Stage::Simplification);
+        let pinned: Vec<Vec<f64>> = on_outline
+            .iter()
+            .filter_map(|landmark| everywhere(landmark, &matched.correspondences[0]))
+            .collect();
+        let simplified = simplification(&outlines, &matched, &pinned, scene.mesh.simplify, &scene.names())?.1;
+        Ok(Self {
+            on_outline: on_outline.to_vec(),
+            reference: scene.reference,
+            tolerance: scene.mesh.simplify,
+            outlines,
+            matched,
+            pinned,
+            simplified,
+        })
+    }
+
+    /// Whether they are those of this scene, too, whose drawings are the same.
+    fn serve(&self, scene: &Scene, on_outline: &[Landmark]) -> bool {
+        self.on_outline == on_outline && self.reference == scene.reference && self.tolerance == scene.mesh.simplify
+    }
+}
+
+/// The simplification, to be varied, and what it gives.
+fn simplification<'a>(
+    outlines: &'a [Outline],
+    matched: &Matched,
+    pinned: &[Vec<f64>],
+    tolerance: f64,
+    names: &[String],
+) -> Result<(Simplification<'a>, Simplified), PipelineError> {
+    let options = SimplifyOptions::default().with_tolerance(tolerance);
+    let refusal = |error| simplify_refusal(names, error);
+    let mut simplification =
+        Simplification::new(outlines, &matched.correspondences, pinned, &options).map_err(refusal)?;
+    let simplified = simplification.polygons().map_err(refusal)?;
+    Ok((simplification, simplified))
 }
 
 /// Maps a scene without copies.
 fn map_drawn(
     scene: &Scene,
     drawings: &[Drawing],
+    before: Option<&Arc<Boundaries>>,
     begins: &mut dyn FnMut(Stage),
-) -> Result<(Mapping, MappingReport), PipelineError> {
+) -> Result<(Mapping, MappingReport, Arc<Boundaries>), PipelineError> {
     let names = scene.names();
     let mut notes = Vec::new();
     for (name, drawing) in names.iter().zip(drawings) {
         notes.extend(drawing.notes.iter().map(|note| format!("pose '{name}': {note}")));
     }
-    let mut outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
-    check_hole_counts(&names, &outlines)?;
+    check_hole_counts(&names, drawings)?;
     let landmarks = landmarks::sorted(scene, drawings)?;
 
-    begins(Stage::Matching);
-    let matched = match_outlines(scene, &mut outlines, &landmarks.on_outline)?;
+    let boundaries = match before.filter(|before| before.serve(scene, &landmarks.on_outline)) {
+        Some(before) => Arc::clone(before),
+        None => Arc::new(Boundaries::new(scene, drawings, &landmarks.on_outline, begins)?),
+    };
+    let Boundaries {
+        outlines,
+        matched,
+        pinned,
+        ..
+    } = boundaries.as_ref();
     for (pose, name) in names.iter().enumerate() {
         if matched.outer.poses[pose].looks_mirrored {
             notes.push(format!(
@@ -81,18 +167,7 @@ fn map_drawn(
             ));
         }
     }
-
-    begins(Stage::Simplification);
-    let pinned: Vec<Vec<f64>> = (landmarks.on_outline)
-        .iter()
-        .filter_map(|landmark| everywhere(landmark, &matched.correspondences[0]))
-        .collect();
-    let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
-    let mut simplification = Simplification::new(&outlines, &matched.correspondences, &pinned, &options)
-        .map_err(|error| simplify_refusal(&names, error))?;
-    let mut simplified = simplification
-        .polygons()
-        .map_err(|error| simplify_refusal(&names, error))?;
+    let mut simplified = boundaries.simplified.clone();
 
     begins(Stage::Triangulation);
     let measured: Vec<ArcLength> = outlines.iter().map(|outline| ArcLength::new(outline.outer())).collect();
@@ -104,7 +179,13 @@ fn map_drawn(
         |polygons: &[Outline], effort| bare_mesh(scene, drawings, polygons, &landmarks, &anchors, effort);
     let mut bare = triangulated(&simplified.polygons, Effort::Full)?;
     let mut first = None;
-    if let Some(varied) = sparser(&mut simplification, &bare, &triangulated)
+    let varied = if bare.mesh.steiner > 0 {
+        let (mut again, _) = simplification(outlines, matched, pinned, scene.mesh.simplify, &names)?;
+        sparser(&mut again, &bare, &triangulated)
+    } else {
+        None
+    };
+    if let Some(varied) = varied
         && let Ok(other) = triangulated(&varied.polygons, Effort::Full)
         && other.mesh.is_sparer_than(&bare.mesh)
     {
@@ -129,8 +210,8 @@ fn map_drawn(
         .map_err(|error| PipelineError::stage(&names, None, error))?;
     let report = MappingReport {
         notes,
-        matching: matched.outer,
-        holes: matched.holes,
+        matching: matched.outer.clone(),
+        holes: matched.holes.clone(),
         landmarks: placed,
         deformed: Vec::new(),
         simplification: simplified.report,
@@ -138,18 +219,17 @@ fn map_drawn(
         refinement,
         quality: MeshQuality::of(&poses),
     };
-    let mut correspondences = matched.correspondences;
     let mapping = Mapping {
         poses,
-        outlines,
+        outlines: outlines.clone(),
         rings: mesh.rings,
         steiner: mesh.steiner,
         matching: Matching {
             reference: matched.reference,
-            outer: correspondences.swap_remove(0),
+            outer: matched.correspondences[0].clone(),
         },
     };
-    Ok((mapping, report))
+    Ok((mapping, report, Arc::clone(&boundaries)))
 }
 
 /// The best of some variations of the simplification by their sketched triangulations, if any beats the first.
@@ -178,6 +258,7 @@ fn sparser(
 }
 
 /// All rings, matched.
+#[derive(Debug)]
 struct Matched {
     reference: usize,
     /// Outer ring first.
@@ -291,13 +372,14 @@ fn match_refusal(names: &[String], error: MatchError) -> PipelineError {
     }
 }
 
-fn check_hole_counts(names: &[String], outlines: &[Outline]) -> Result<(), PipelineError> {
-    let expected = outlines.first().map_or(0, |outline| outline.holes().len());
-    match outlines.iter().position(|outline| outline.holes().len() != expected) {
+fn check_hole_counts(names: &[String], drawings: &[Drawing]) -> Result<(), PipelineError> {
+    let holes = |drawing: &Drawing| drawing.outline.holes().len();
+    let expected = drawings.first().map_or(0, holes);
+    match drawings.iter().position(|drawing| holes(drawing) != expected) {
         None => Ok(()),
         Some(pose) => Err(PipelineError::HoleCount {
             pose: names[pose].clone(),
-            found: outlines[pose].holes().len(),
+            found: holes(&drawings[pose]),
             other: names[0].clone(),
             expected,
         }),

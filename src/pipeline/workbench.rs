@@ -8,10 +8,11 @@
 //! | places, pseudo-poses, the pose space | weights |
 //! | sharpness of textures, order of layers | nothing |
 //! | stretch, anchors, regions, turns, references of the blend | the blend's factor |
-//! | landmarks, the mesh's options, copies | the mapping |
+//! | landmarks and lines inside, `edge_length`, copies | the triangulation and what follows |
+//! | landmarks on the outline, the reference, `simplify` | the mapping |
 //! | sources, `mirror`, `[input]`; or the files themselves | everything |
 //!
-//! Its shapes are those of a `Character` of the same scene, to the last bit.
+//! Its shapes are those of a `Character` of the same scene, to the last bit; its camera after [`Workbench::filmed_anew`].
 
 use std::sync::Arc;
 
@@ -20,7 +21,8 @@ use rayon::prelude::*;
 use super::figure::{self, Figure, Posed};
 use super::layer::{self, LayerShape, Part, PosedLayer};
 use super::layout::placed;
-use super::{EditableWeights, MappingReport, PipelineError, editable_weights, landmarks, map_drawings, read_drawings};
+use super::mapping::{Boundaries, map_drawings_again};
+use super::{EditableWeights, MappingReport, PipelineError, editable_weights, landmarks, read_drawings};
 use crate::input::Drawing;
 use crate::math::Point;
 use crate::render::Camera;
@@ -56,6 +58,7 @@ pub struct Workbench {
 struct LayerWork {
     drawings: Arc<Vec<Drawing>>,
     report: Arc<MappingReport>,
+    boundaries: Arc<Boundaries>,
 }
 
 impl Workbench {
@@ -73,6 +76,16 @@ impl Workbench {
     /// As [`Self::new`]; this workbench stays as it is.
     pub fn edited(&self, scene: &Scene, files: DrawingFiles) -> Result<Self, PipelineError> {
         Self::made(scene, Some(self), files)
+    }
+
+    /// The same with the camera of a new one. Edits keep the camera that was there, since looking at the whole animation takes as
+    /// long as dozens of frames.
+    ///
+    /// # Errors
+    /// [`PipelineError`] if the animation leaves the pose space.
+    pub fn filmed_anew(&self) -> Result<Self, PipelineError> {
+        let camera = camera(&self.scene, &self.figure, &self.weights)?;
+        Ok(Self { camera, ..self.clone() })
     }
 
     /// The same shapes with other weights, of `scene`, which is laid out and differs in what weights are made of alone. The
@@ -105,6 +118,9 @@ impl Workbench {
             let drawings_kept = was
                 .filter(|(old, ..)| files == DrawingFiles::Unchanged && shows_the_same(old.scene, part.scene))
                 .map(|(_, work, _)| Arc::clone(&work.drawings));
+            let boundaries_kept = was
+                .filter(|_| drawings_kept.is_some())
+                .map(|(_, work, _)| &work.boundaries);
             let mapped_before = was.filter(|(old, ..)| drawings_kept.is_some() && maps_the_same(old.scene, part.scene));
             let drawings = match drawings_kept {
                 Some(drawings) => drawings,
@@ -116,14 +132,19 @@ impl Workbench {
                 let shape = part.shape_again(shape, &mut notes)?;
                 return Ok((work.clone(), shape, notes));
             }
-            let (mapping, mut report) = map_drawings(part.scene, &drawings).map_err(|error| part.refusal(error))?;
+            let (mapping, mut report, boundaries) =
+                map_drawings_again(part.scene, &drawings, boundaries_kept).map_err(|error| part.refusal(error))?;
             for note in &mut report.notes {
                 *note = part.remark(note);
             }
             notes.extend(report.notes.iter().cloned());
             let shape = part.shape(mapping, &mut notes)?;
-            let report = Arc::new(report);
-            Ok((LayerWork { drawings, report }, shape, notes))
+            let work = LayerWork {
+                drawings,
+                report: Arc::new(report),
+                boundaries,
+            };
+            Ok((work, shape, notes))
         };
         let made: Vec<Result<_, PipelineError>> = parts.par_iter().enumerate().map(step).collect();
         let (mut layers, mut shapes, mut notes) = (Vec::new(), Vec::new(), Vec::new());
@@ -140,8 +161,10 @@ impl Workbench {
             None => weights_of(&scene, before)?,
         };
         let figure = Arc::new(Figure::new(&scene, shapes));
-        let size = scene.animation.size.map(|side| side as usize);
-        let camera = figure::camera(&scene.animation, size, &figure, weights.as_ref())?;
+        let camera = match before {
+            Some(before) => before.camera,
+            None => camera(&scene, &figure, &weights)?,
+        };
         Ok(Self {
             given: given.clone(),
             scene,
@@ -204,6 +227,12 @@ impl Workbench {
         &self.weights
     }
 
+    /// Whether both pose the same weights in the same way.
+    #[must_use]
+    pub fn has_figure_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.figure, &other.figure)
+    }
+
     /// Whether both have the meshes of one and the same mapping.
     #[must_use]
     pub fn has_meshes_of(&self, other: &Self) -> bool {
@@ -234,6 +263,12 @@ impl Workbench {
             .silhouette
             .at(&posed.positions, &posed.weights)
     }
+}
+
+/// The camera of frames of the animation's own size.
+fn camera(scene: &Scene, figure: &Figure, weights: &EditableWeights) -> Result<Camera, PipelineError> {
+    let size = scene.animation.size.map(|side| side as usize);
+    figure::camera(&scene.animation, size, figure, weights)
 }
 
 /// The weights, kept if nothing that they are made of has changed.

@@ -37,6 +37,8 @@ use collapse::{Collapser, OriginalRing, PoseOriginal};
 use tuples::{Pin, TupleRing};
 
 use super::CompatibleMesh;
+use rayon::prelude::*;
+
 use crate::matching::Correspondence;
 use crate::math::{Point, point};
 use crate::outline::{Outline, OutlineError, Ring, RingError};
@@ -409,7 +411,7 @@ fn simplify_alone(
     tolerance: f64,
 ) -> Vec<Vec<TupleRing>> {
     outlines
-        .iter()
+        .par_iter()
         .enumerate()
         .map(|(pose, outline)| {
             let pins: Vec<Pin> = (landmarks.iter().enumerate())

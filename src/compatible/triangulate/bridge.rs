@@ -13,6 +13,8 @@
 //! The paper has neither holes nor landmarks.
 //! Cost O(m^2) for each island, m the number of vertices.
 
+use rayon::prelude::*;
+
 use super::bridge_path;
 use super::free_space::{FreeSpace, Visits};
 use crate::math::{Point, point};
@@ -54,7 +56,7 @@ pub(super) fn join_islands(
     while !islands.is_empty() {
         let visits = Visits::new(std::iter::once(&walk).chain(&islands));
         let spaces: Vec<FreeSpace> = positions
-            .iter()
+            .par_iter()
             .enumerate()
             .map(|(pose, points)| {
                 FreeSpace::new(points, &visits).ok_or(Narrow {
@@ -62,6 +64,8 @@ pub(super) fn join_islands(
                     place: points[islands[0][0]],
                 })
             })
+            .collect::<Vec<Result<_, _>>>()
+            .into_iter()
             .collect::<Result<_, _>>()?;
         let sights = Sights::new(&spaces, &visits);
         let length = |from: usize, to: usize| {
@@ -122,7 +126,7 @@ impl Sights {
         Self {
             walk,
             seen: spaces
-                .iter()
+                .par_iter()
                 .map(|space| (walk..count).map(|visit| seen_from(space, visit)).collect())
                 .collect(),
         }
