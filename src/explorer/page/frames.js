@@ -1,5 +1,5 @@
 // Frames of where the probe is: one request at a time, and the newest place wins.
-import { getWords, readFrames, Refused, Words } from './api.js';
+import { getJson, getWords, readFrames, Refused, Words } from './api.js';
 import { emit, on, store } from './state.js';
 
 let wanted = false;
@@ -12,30 +12,42 @@ export const roundTrips = [];
 const instead = () => store.view.compare ?? {};
 
 async function ask() {
-  if (asking || !wanted || !(store.state?.revisions.shape > 0)) return;
+  if (asking || !wanted || !store.scene?.poses.length) return;
   asking = true;
   wanted = false;
   const place = store.place.slice();
   const started = performance.now();
   try {
-    const words = await getWords('frame', { at: place, silhouette: 1, ...instead() });
-    roundTrips.push(performance.now() - started);
-    if (roundTrips.length > 240) roundTrips.shift();
-    const [frame] = readFrames(words);
-    frame.place = place;
-    // A frame of meshes that are not here yet would be drawn with the wrong triangles.
-    if (frame.shape === store.puppet?.shape) {
-      store.frame = frame;
-      emit('frame');
-    } else {
-      wanted = true;
-    }
+    if (!(store.state.revisions.shape > 0)) await askWeights(place);
+    else await askFrame(place, started);
   } catch (error) {
     if (!(error instanceof Refused)) await new Promise((wait) => setTimeout(wait, 500));
   }
   asking = false;
   if (wanted) requestAnimationFrame(ask);
   else waiting.splice(0).forEach((done) => done());
+}
+
+async function askFrame(place, started) {
+  const words = await getWords('frame', { at: place, silhouette: 1, ...instead() });
+  roundTrips.push(performance.now() - started);
+  if (roundTrips.length > 240) roundTrips.shift();
+  const [frame] = readFrames(words);
+  frame.place = place;
+  // A frame of meshes that are not here yet would be drawn with the wrong triangles.
+  if (frame.shape === store.puppet?.shape) {
+    store.frame = frame;
+    emit('frame');
+  } else {
+    wanted = true;
+  }
+}
+
+/** Of a scene without a mesh the weights alone. */
+async function askWeights(place) {
+  const [{ weights, texture_weights: textureWeights }] = await getJson('weights', { at: place });
+  store.frame = { place, weights, textureWeights, shape: 0, revision: store.state.revisions.weights, inverted: 0, order: [], layers: [] };
+  emit('frame');
 }
 
 /** Wants the frame of where the probe is now. */

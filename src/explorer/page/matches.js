@@ -17,7 +17,7 @@ let dragging = false;
 let showMesh = false;
 
 async function read() {
-  if (!store.scene) return;
+  if (!store.scene?.poses.length) return;
   try {
     const layer = store.layer;
     const answer = await getJson('correspondences', { layer, samples: 0 });
@@ -47,7 +47,8 @@ function build() {
     const warning = h('span', { class: 'warning' });
     const element = h('figure', { class: `cell${pose.drawn ? '' : ' copy'}` }, h('figcaption', {}, h('b', {}, pose.name), index === data.reference ? h('span', { class: 'faint small' }, 'reference') : null, pose.drawn ? null : h('span', { class: 'faint small' }, 'copy'), h('span', { class: 'grow' }), warning), drawing);
     const cell = { pose, index, box, drawing, layers, warning, element };
-    if (pose.picture) {
+    // A copy has no drawing of its own: what it would show is bent otherwise.
+    if (pose.picture && pose.drawn) {
       const { origin, scale, width, height } = pose.picture;
       const source = `api/drawing?layer=${store.layer}&pose=${pose.pose}&max=640&v=${store.state.revisions.pictures}`;
       layers.picture.append(s('image', { href: source, x: origin[0], y: origin[1], width: width / scale, height: height / scale, preserveAspectRatio: 'none' }));

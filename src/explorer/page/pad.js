@@ -4,7 +4,7 @@ import { byId, clamp, follow, h, onceAFrame, s, set, short } from './dom.js';
 import { numberField, segments, toggle } from './controls.js';
 import { niceStep, PadView, shownPlane } from './plane.js';
 import { paintMap, legend } from './maps.js';
-import { drawThumbnail } from './thumbnail.js';
+import { copyThumbnail, drawThumbnail } from './thumbnail.js';
 import { recordSample, recordStart, recordStop, recording } from './recorder.js';
 
 /** Pixels that a pointer may move before a press becomes a drag. */
@@ -181,15 +181,17 @@ function drawPoses() {
       poses.append(thumbnails.get(pose.name));
     }
     const element = thumbnails.get(pose.name);
+    // Until there is a mesh, the drawing itself; then the pose as it is drawn (`thumbnail` events).
     const source = `api/drawing?layer=${pose.layers[0] ?? 0}&pose=${index}&max=256&v=${version}`;
     const picture = element.firstChild;
     if (picture.dataset.source !== source) {
       picture.dataset.source = source;
-      drawThumbnail(picture, source);
+      if (!(store.state.revisions.shape > 0)) drawThumbnail(picture, source);
     }
     element.lastChild.textContent = pose.name;
     element.classList.toggle('chosen', store.pose === index);
     element.classList.toggle('copy', pose.kind === 'deformed');
+    element.classList.toggle('wrong', (store.state?.problems ?? []).some((problem) => problem.pose === pose.name));
     element.setAttribute('aria-label', `Pose ${pose.name} at ${pose.at.map((v) => short(v)).join(', ')}. Enter goes there, arrow keys move it.`);
     if (!element.classList.contains('held')) place(element, pose.at);
   });
@@ -301,6 +303,10 @@ on('scene gesture pose', () => {
 on('place', () => {
   drawProbe();
   drawFields();
+});
+on('thumbnail', ({ pose, canvas: from, box }) => {
+  const picture = thumbnails.get(store.scene.poses[pose]?.name)?.firstChild;
+  if (picture) copyThumbnail(picture, from, box);
 });
 on('weights', drawMap);
 on('view', () => {

@@ -2,7 +2,7 @@
 import { byId, clamp, h, onceAFrame, short } from './dom.js';
 import { emit, on, store } from './state.js';
 import { framesOf } from './frames.js';
-import { PuppetPainter } from './puppet.js';
+import { extent, PuppetPainter } from './puppet.js';
 import { attachHandles, drawHandles, pictureDrag } from './handles.js';
 
 const stage = byId('stage');
@@ -93,8 +93,12 @@ function draw() {
   paper.style.height = `${h_ * corner.scale}px`;
   const background = store.scene?.animation?.background;
   paper.style.background = background && background !== 'transparent' ? background : '';
-  paper.classList.toggle('hidden', !store.frame);
-  if (!painter.gl || !loaded || !store.frame) return;
+  paper.classList.toggle('hidden', !store.frame?.layers.length);
+  if (painter.gl) note.textContent = store.scene && !(store.state.revisions.shape > 0) ? 'There is no drawing yet: the scene cannot be mapped. Matches shows what can be read.' : '';
+  if (!painter.gl || !loaded || !store.frame?.layers.length) {
+    if (store.frame) tellWhat();
+    return;
+  }
   const view = drawingView();
   painter.begin({ scale: view.scale * ratio, x: view.x * ratio, y: view.y * ratio });
   const inLight = store.scene.texture?.blending === 'linear';
@@ -106,7 +110,6 @@ function draw() {
     if (store.view.mesh) painter.wires(shown, { line: [0.2 * 0.8, 0.33 * 0.8, 0.85 * 0.8, 0.8], wrong: [0.82, 0.18, 0.15, 1], thickness: 0.35 * ratio });
   }
   drawHandles();
-  note.textContent = '';
   const inverted = shown.inverted;
   badge.classList.toggle('hidden', !(inverted > 0));
   badge.textContent = `${inverted} inverted ${inverted === 1 ? 'triangle' : 'triangles'}`;
@@ -137,6 +140,33 @@ export function drawNow() {
   painter.gl?.readPixels(0, 0, 1, 1, painter.gl.RGBA, painter.gl.UNSIGNED_BYTE, new Uint8Array(4));
 }
 
+// The poses as they are drawn, for the pad.
+
+/** Milliseconds without another shape after which thumbnails are drawn. */
+const THUMBNAILS_AFTER = 60;
+/** Pixels of a thumbnail while it is drawn. */
+const THUMBNAIL = 192;
+let resting = 0;
+
+async function drawThumbnails() {
+  const count = store.scene.poses.length;
+  const frames = await framesOf('weights', store.scene.poses.map((_, k) => Array.from({ length: count }, (_, i) => Number(i === k))));
+  // Drawn into the picture's own canvas and copied before anybody sees it.
+  const side = Math.min(THUMBNAIL, canvas.width, canvas.height);
+  frames.forEach((frame, pose) => {
+    const shown = frame.layers.filter((layer) => layer.opacity > 0).flatMap((layer) => layer.rings);
+    if (shown.length === 0 || frame.layers.length !== painter.layers.length || side < 16) return;
+    const boxes = shown.map(extent);
+    const low = [0, 1].map((d) => Math.min(...boxes.map(([from]) => from[d])));
+    const high = [0, 1].map((d) => Math.max(...boxes.map(([, to]) => to[d])));
+    const scale = (side - 4) / Math.max(high[0] - low[0], high[1] - low[1]);
+    painter.begin({ scale, x: 2 - low[0] * scale, y: 2 - low[1] * scale });
+    painter.frame(frame, { inLight: store.scene.texture?.blending === 'linear' });
+    emit('thumbnail', { pose, canvas, box: [0, 0, Math.ceil((high[0] - low[0]) * scale) + 4, Math.ceil((high[1] - low[1]) * scale) + 4] });
+  });
+  draw();
+}
+
 let loading = 0;
 async function load() {
   const mine = ++loading;
@@ -152,6 +182,8 @@ async function load() {
     document.documentElement.dataset.shape = puppet.shape;
     redraw();
     drawUnder();
+    clearTimeout(resting);
+    resting = setTimeout(drawThumbnails, THUMBNAILS_AFTER);
   } catch (error) {
     console.error(error);
   }

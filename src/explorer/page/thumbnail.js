@@ -11,12 +11,17 @@ export async function drawThumbnail(canvas, source) {
   const bitmap = await createImageBitmap(await answer.blob());
   const [left, top, right, bottom] = drawn(bitmap);
   const [width, height] = [right - left, bottom - top];
+  copyThumbnail(canvas, bitmap, [left, top, width, height]);
+  bitmap.close();
+}
+
+/** A part of a picture, as large as it can be. */
+export function copyThumbnail(canvas, from, [left, top, width, height]) {
   const scale = SIDE / Math.max(width, height);
   Object.assign(canvas, { width: SIDE, height: SIDE });
   const context = canvas.getContext('2d');
   context.imageSmoothingQuality = 'high';
-  context.drawImage(bitmap, left, top, width, height, (SIDE - width * scale) / 2, (SIDE - height * scale) / 2, width * scale, height * scale);
-  bitmap.close();
+  context.drawImage(from, left, top, width, height, (SIDE - width * scale) / 2, (SIDE - height * scale) / 2, width * scale, height * scale);
 }
 
 /** The box around what is not clear. */
