@@ -237,6 +237,12 @@ async function saved(page) {
   }
 }
 
+/** The same after an edit has reached the server. */
+async function edited(page, label) {
+  await page.waitForFunction(async (wanted) => (await (await fetch('api/state')).json()).undo?.startsWith(wanted), label);
+  return saved(page);
+}
+
 async function movedPose(page, answer) {
   const bytes = readFileSync(scene);
   await page.keyboard.press('Home');
@@ -262,7 +268,7 @@ async function movedPose(page, answer) {
   check(during.some((weight, k) => Math.abs(weight - before[k]) > 0.01), 'dragging a pose changes the weights while it is dragged');
   check(Buffer.compare(readFileSync(scene), bytes) === 0, 'a drag that has not ended is not in the file');
   await page.mouse.up();
-  await saved(page);
+  await edited(page, 'move pose');
   const text = readFileSync(scene, 'utf8');
   check(text !== String(bytes), 'the move is in the file');
   const comments = (all) => all.split('\n').filter((line) => line.trim().startsWith('#')).join('\n');
@@ -325,7 +331,7 @@ async function landmark(page, answer) {
   }, at);
   await drag(page, at, along);
   await page.click('#add-landmark');
-  await saved(page);
+  await edited(page, 'add a landmark');
   const started = await state(page);
   const after = await read();
   const scale = Math.max(...before.poses.map((pose) => pose.picture.height / pose.picture.scale));
@@ -337,13 +343,13 @@ async function landmark(page, answer) {
   const own = await page.evaluate(async () => (await (await fetch('api/scene')).json()).landmarks.at(-1).name);
   const placed = await other.locator(`.mark[data-landmark="${own}"] .reach`).boundingBox();
   await drag(page, [placed.x + placed.width / 2, placed.y + placed.height / 2], at, 5, 40);
-  await saved(page);
+  await edited(page, 'move landmark');
   const moved = await read();
   const again = Math.max(...moved.samples.flatMap((points, k) => points.map((value, i) => Math.abs(value - after.samples[k][i]))));
   check(again > 0.001 * scale, 'dragging the landmark changes the match again');
   await page.locator('#probe').focus();
   await page.click('#undo');
-  await saved(page);
+  await edited(page, 'add a landmark');
   await page.click('#undo');
   await page.waitForFunction(async () => (await (await fetch('api/state')).json()).undo === null);
   await saved(page);
@@ -372,7 +378,7 @@ async function gesture(page, answer) {
   await page.screenshot({ path: join(folder, `${name}-gesture.png`) });
   await page.click('#save-gesture');
   await page.waitForSelector('#save-gesture', { state: 'hidden' });
-  await saved(page);
+  await edited(page, 'record a gesture');
   const now = await page.evaluate(async () => (await (await fetch('api/scene')).json()).animation);
   const text = String(readFileSync(scene));
   check(now.own_keys && text.includes('[animation]') && Math.abs(now.duration - 1) < 0.06, `the gesture is in the file: ${now.keys.length} keys in ${now.duration.toFixed(2)} s`);
