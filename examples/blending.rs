@@ -145,21 +145,22 @@ fn morphing_against_deformation(walker: &Cast) -> Result<Sheet, Box<dyn Error>> 
     Ok(sheet)
 }
 
-/// Writes `NAME.png` with a palette, which takes a third of the bytes.
 fn save(sheet: Sheet, folder: &Path, name: &str) -> Result<(), Box<dyn Error>> {
-    let frame = sheet.into_frame();
-    let palette = Palette::for_frames(std::slice::from_ref(&frame));
-    let file = std::fs::File::create(folder.join(format!("{name}.png")))?;
-    let mut encoder = png::Encoder::new(file, frame.width as u32, frame.height as u32);
+    save_with_palette(&sheet.into_frame(), &folder.join(format!("{name}.png")))
+}
+
+/// Writes a PNG file with a palette, which takes a third of the bytes.
+pub(crate) fn save_with_palette(frame: &Frame, path: &Path) -> Result<(), Box<dyn Error>> {
+    let palette = Palette::for_frames(std::slice::from_ref(frame));
+    let mut encoder = png::Encoder::new(std::fs::File::create(path)?, frame.width as u32, frame.height as u32);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_palette(palette.bytes());
     encoder.set_compression(png::Compression::High);
     encoder.set_filter(png::Filter::NoFilter);
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&palette.indices(&frame))?;
-    writer.finish()?;
-    Ok(())
+    writer.write_image_data(&palette.indices(frame))?;
+    Ok(writer.finish()?)
 }
 
 /// A shape to be painted.
@@ -264,11 +265,8 @@ impl Cast {
             })
             .collect();
         // A deformed copy shows the drawing that it is a copy of.
-        let texture_of = |pose: usize| {
-            let root = self.scene.drawing_of(pose).map(|(root, _)| root);
-            drawn.iter().position(|pose| Some(*pose) == root).unwrap_or(0)
-        };
-        let texture_of = (0..self.scene.poses.len()).map(texture_of).collect();
+        let drawing = |original: usize| drawn.iter().position(|&pose| pose == original).unwrap_or(0);
+        let texture_of = self.scene.originals().into_iter().map(drawing).collect();
         Painter::new(
             &self.mapping,
             textures,

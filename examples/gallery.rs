@@ -1,12 +1,14 @@
 //! Every picture of the README: `cargo run --release --example gallery -- data/pictures` draws them again.
 //!
-//! The stages of the pipeline and the comparisons of blends come from the examples of those names; the animations, the
+//! The stages of the pipeline, the comparisons of blends and the cardinal basis come from the examples of those names; the animations, the
 //! explained scene and the drawing carried as curves are drawn here.
 
-#![expect(clippy::duplicate_mod, reason = "both examples have the sheet that they draw on")]
+#![expect(clippy::duplicate_mod, reason = "the examples have the sheet that they draw on")]
 
 #[path = "blending.rs"]
 mod blending;
+#[path = "cardinal_basis.rs"]
+mod cardinal_basis;
 #[path = "stages.rs"]
 mod stages;
 
@@ -39,6 +41,7 @@ fn main() -> Drawn {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("usage: gallery FOLDER")?);
     stages::main()?;
     blending::main()?;
+    cardinal_basis::main()?;
     for (name, size, fps) in ANIMATIONS {
         animation(name, size, fps, &folder)?;
     }
@@ -110,20 +113,7 @@ fn explained(folder: &Path) -> Drawn {
         height,
         pixels: rows.flat_map(|row| row[..width].iter().copied()).collect(),
     };
-    few_colours(&folder.join("show.png"), &frame)
-}
-
-/// A large picture of lines and flat colours, in 256 of them: a quarter of the bytes.
-fn few_colours(path: &Path, frame: &Frame) -> Drawn {
-    let palette = Palette::for_frames(std::slice::from_ref(frame));
-    let mut file = PendingFile::create(path)?;
-    let mut encoder = png::Encoder::new(&mut file, frame.width as u32, frame.height as u32);
-    encoder.set_color(png::ColorType::Indexed);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::High);
-    encoder.set_palette(palette.bytes());
-    encoder.write_header()?.write_image_data(&palette.indices(frame))?;
-    Ok(file.commit()?)
+    blending::save_with_palette(&frame, &folder.join("show.png"))
 }
 
 /// From one face to another: above cross-faded as pixels, below as curves.

@@ -1,9 +1,12 @@
 //! A frame allocates nothing: counted, not promised.
 
 use inbetween::blend::{Anchor, BlendOptions, RigidBlend, SoftAnchor, Stretch};
-use inbetween::math::Point;
+use inbetween::math::{Point, Point3};
 use inbetween::mesh::Topology;
 use inbetween::pose::PoseSet;
+use inbetween::render::{ColourBlend, Frame};
+use inbetween::shape3d::{Example, Form, FormBlender, FormLayout, FormTopology, ImageBlend, Shape};
+use inbetween::weights::{PseudoPose, RbfOptions, WeightProvider};
 
 /// What `work` allocates on this thread; the counter replaces the allocator of the whole test.
 fn allocations(work: impl FnOnce()) -> u64 {
@@ -63,6 +66,44 @@ fn a_frame_allocates_nothing() {
             assert_eq!(counted, 0, "{options:?}");
         }
     }
+}
+
+#[test]
+fn weights_and_blends_of_forms_allocate_nothing() {
+    let topology = FormTopology::from_triangles(50, vec![[0, 1, 2]]).expect("a triangle");
+    let example = |k: usize| {
+        let position = |v: usize| Point3::new(v as f64, k as f64, 0.1 * (v * k) as f64);
+        Example {
+            form: Form::new(&topology, (0..50).map(position).collect()).expect("a form"),
+            at: vec![k as f64, (k * k) as f64],
+        }
+    };
+    let pseudo = PseudoPose {
+        from: vec![1.5, 2.0],
+        at: vec![1.5, 3.0],
+    };
+    let options = RbfOptions {
+        pseudo_poses: vec![pseudo],
+        ..RbfOptions::default()
+    };
+    let shape = Shape::new(topology.clone(), (0..6).map(example).collect(), &options).expect("a shape");
+    let textures: Vec<Frame> = (0..6).map(|k| Frame::filled(19, 5, [k, 2 * k, 255 - k, 200])).collect();
+    let images = ImageBlend::new(&textures, ColourBlend::Linear).expect("one size");
+    let blender = FormBlender::new(&shape, FormLayout::Planar);
+    let mut weights = Vec::with_capacity(shape.forms().len());
+    let mut values = vec![0.0; blender.value_count()];
+    let mut positions = vec![Point3::zeros(); 50];
+    let mut pixels = vec![[0; 4]; 19 * 5];
+    let counted = allocations(|| {
+        for k in 0..10 {
+            let at = [0.3 * f64::from(k), 2.0];
+            shape.weights().weights(&at, &mut weights).expect("a place");
+            blender.blend(&weights, &mut values).expect("buffers");
+            shape.blend(&weights, &mut positions).expect("buffers");
+            images.blend_into(&weights, &mut pixels).expect("buffers");
+        }
+    });
+    assert_eq!(counted, 0);
 }
 
 #[test]

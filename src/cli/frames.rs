@@ -47,13 +47,9 @@ pub(crate) fn tell_inverted(
     numbers: &[usize],
     verbosity: Verbosity,
 ) -> Result<(), PipelineError> {
-    let mut inverted = Vec::new();
-    for &number in numbers {
-        let flipped = character.posed(animation, number - 1)?.flipped();
-        if flipped > 0 {
-            inverted.push((number, flipped));
-        }
-    }
+    let flipped = |number: &usize| Ok((*number, character.posed(animation, number - 1)?.flipped()));
+    let mut inverted: Vec<(usize, usize)> = numbers.par_iter().map(flipped).collect::<Result<_, PipelineError>>()?;
+    inverted.retain(|(_, count)| *count > 0);
     if let Some((number, count)) = inverted
         .iter()
         .max_by_key(|(number, count)| (*count, std::cmp::Reverse(*number)))

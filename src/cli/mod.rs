@@ -16,6 +16,7 @@ mod output;
 mod progress;
 mod reach;
 mod render;
+mod shape;
 mod show;
 mod stage_table;
 mod triangulate;
@@ -59,6 +60,7 @@ enum Verb {
     Show(show::Arguments),
     #[cfg(feature = "explorer")]
     Explore(explore::Arguments),
+    Shape(shape::Arguments),
 }
 
 /// Why a verb did not do its work.
@@ -116,6 +118,7 @@ pub(crate) fn run() -> ExitCode {
         Verb::Show(verb) => show::run(&verb, verbosity),
         #[cfg(feature = "explorer")]
         Verb::Explore(verb) => explore::run(&verb, verbosity),
+        Verb::Shape(verb) => shape::run(&verb, verbosity),
     };
     let (code, message) = match outcome {
         Ok(()) => return ExitCode::SUCCESS,

@@ -14,7 +14,7 @@ use serde::Deserialize;
 use serde_json::Value;
 use toml_edit::DocumentMut;
 
-use super::pictures::layer_scene;
+use super::pictures::reflected;
 use super::problem::{Problem, Refusal, Where};
 
 /// One edit. The fields are those that the page of the [explorer](super) lists.
@@ -196,16 +196,7 @@ impl Context<'_> {
     fn as_written(&self, layer: Option<&str>, pose: &str, place: Point) -> Point {
         let Some(bench) = self.bench else { return place };
         let shape = |layer: &str| bench.layers().iter().position(|shape| shape.name() == layer);
-        let layer = layer.and_then(shape).unwrap_or(0);
-        let scene = layer_scene(bench.scene(), layer);
-        let Some(index) = scene.poses.iter().position(|own| own.name == pose) else {
-            return place;
-        };
-        let root = scene.drawing_of(index).map(|(root, _)| root);
-        match scene.drawn_poses().iter().position(|drawn| Some(*drawn) == root) {
-            Some(drawing) => bench.as_used(layer, drawing, place),
-            None => place,
-        }
+        reflected(bench, layer.and_then(shape).unwrap_or(0), pose, place)
     }
 }
 

@@ -4,7 +4,7 @@ use inbetween::export::texture_png;
 use inbetween::math::Point;
 use inbetween::pipeline::Workbench;
 use inbetween::render::{PuppetTexture, Texture};
-use inbetween::scene::Scene;
+use inbetween::scene::{Facing, Scene};
 use serde_json::{Value, json};
 
 use super::frames::Words;
@@ -18,6 +18,19 @@ const TEXELS_A_PIXEL: f64 = 2.0;
 /// A layer as a scene without layers.
 pub(super) fn layer_scene(scene: &Scene, layer: usize) -> &Scene {
     scene.layers.get(layer).map_or(scene, |layer| &layer.scene)
+}
+
+/// A place on a pose of a layer, from the file's coordinates to drawing units or back: reflected where the pose is.
+pub(super) fn reflected(bench: &Workbench, layer: usize, pose: &str, place: Point) -> Point {
+    let scene = layer_scene(bench.scene(), layer);
+    let root = (scene.poses.iter().position(|own| own.name == pose)).and_then(|index| scene.drawing_of(index));
+    match root {
+        Some((root, source)) if source.facing == Facing::Mirrored => {
+            let drawing = scene.drawn_poses().iter().position(|drawn| *drawn == root);
+            drawing.map_or(place, |drawing| bench.as_used(layer, drawing, place))
+        }
+        _ => place,
+    }
 }
 
 /// The texture of each pose of a layer.

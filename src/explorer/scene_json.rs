@@ -2,17 +2,22 @@
 
 use inbetween::blend::{FrameGuard, Reference, Stretch};
 use inbetween::math::Point;
+use inbetween::pipeline::Workbench;
 use inbetween::scene::{
-    ArtChoice, Background, ColourBlend, Facing, Layout, PoseSource, Provider, Radial, Scene, WeightRange,
+    ArtChoice, Background, ColourBlend, Facing, HandleMove, Layout, PoseSource, Provider, Radial, Scene, WeightRange,
 };
 use serde_json::{Map, Value, json};
 
+use super::pictures::reflected;
 use super::session::Session;
 
 /// `GET api/scene`.
 pub(super) fn scene(session: &Session) -> Value {
     let shown = session.shown();
-    let mut answer = shown.scene.as_ref().map_or_else(nothing, |scene| of(scene));
+    let mut answer = shown
+        .scene
+        .as_ref()
+        .map_or_else(nothing, |scene| of(scene, shown.bench.as_deref()));
     let bench = shown.bench.as_ref();
     let camera = bench.map(|bench| {
         let shift = bench.camera().to_pixels(Point::zeros());
@@ -58,14 +63,14 @@ fn nothing() -> Value {
     })
 }
 
-fn of(scene: &Scene) -> Value {
+fn of(scene: &Scene, bench: Option<&Workbench>) -> Value {
     let settings = &scene.pose_space;
     let plane = plane(scene);
     json!({
         "name": scene.short_name(),
         "dimension": scene.dimension(),
         "layout": match scene.layout { Layout::Given => "given", Layout::Automatic => "automatic" },
-        "poses": (0..scene.poses.len()).map(|pose| pose_json(scene, pose)).collect::<Vec<_>>(),
+        "poses": (0..scene.poses.len()).map(|pose| pose_json(scene, bench, pose)).collect::<Vec<_>>(),
         "pseudo_poses": scene.pseudo_poses.iter().map(|p| json!({"from": p.from, "at": p.at})).collect::<Vec<_>>(),
         "pose_space": {
             "provider": match settings.provider { Provider::Biharmonic => "biharmonic", Provider::Rbf => "rbf" },
@@ -93,7 +98,7 @@ fn of(scene: &Scene) -> Value {
         },
         "mesh": {"simplify": scene.mesh.simplify, "edge_length": scene.mesh.edge_length},
         "layers": layers(scene),
-        "landmarks": landmarks(scene),
+        "landmarks": landmarks(scene, bench),
         "animation": animation(scene),
         "box": plane.map(|(low, high)| [low, high]),
         "domain": plane.map(|(low, high)| {
@@ -116,7 +121,7 @@ pub(super) fn plane(scene: &Scene) -> Option<([f64; 2], [f64; 2])> {
     Some((fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max)))
 }
 
-fn pose_json(scene: &Scene, index: usize) -> Value {
+fn pose_json(scene: &Scene, bench: Option<&Workbench>, index: usize) -> Value {
     let pose = &scene.poses[index];
     let mut handles = Vec::new();
     let mut mirror = false;
@@ -129,11 +134,9 @@ fn pose_json(scene: &Scene, index: usize) -> Value {
         }
         PoseSource::Deformed(copy) => {
             deform_of = scene.poses[copy.of].name.clone().into();
-            handles.extend(
-                copy.handles
-                    .iter()
-                    .map(|h| json!({"from": [h.from.x, h.from.y], "to": [h.to.x, h.to.y]})),
-            );
+            let place = |place| used(bench, 0, &pose.name, place);
+            let handle = |handle: &HandleMove| json!({"from": place(handle.from), "to": place(handle.to)});
+            handles.extend(copy.handles.iter().map(handle));
             "deformed"
         }
         PoseSource::Layered => "layered",
@@ -161,22 +164,36 @@ fn layers(scene: &Scene) -> Vec<Value> {
     scene.layers.iter().map(layer).collect()
 }
 
-fn landmarks(scene: &Scene) -> Vec<Value> {
-    let named = |at: Vec<Option<Value>>| -> Map<String, Value> {
-        let given = scene.poses.iter().zip(at);
-        given.filter_map(|(pose, at)| Some((pose.name.clone(), at?))).collect()
-    };
-    let point = |p: &Point| json!([p.x, p.y]);
+/// A place of the file in drawing units.
+fn used(bench: Option<&Workbench>, layer: usize, pose: &str, place: Point) -> [f64; 2] {
+    bench.map_or(place, |bench| reflected(bench, layer, pose, place)).into()
+}
+
+/// What is said of each pose, by its name.
+fn by_pose<T>(scene: &Scene, at: &[Option<T>], value: impl Fn(&str, &T) -> Value) -> Map<String, Value> {
+    let given = scene.poses.iter().zip(at);
+    given
+        .filter_map(|(pose, at)| Some((pose.name.clone(), value(&pose.name, at.as_ref()?))))
+        .collect()
+}
+
+fn landmarks(scene: &Scene, bench: Option<&Workbench>) -> Vec<Value> {
     let points = scene.landmarks.iter().map(|landmark| {
-        let at = landmark.at.iter().map(|at| at.as_ref().map(point)).collect();
-        json!({
-            "name": landmark.name, "layer": landmark.layer.unwrap_or(0), "line": landmark.line, "path": false, "at": named(at),
-        })
+        let layer = landmark.layer.unwrap_or(0);
+        let at = by_pose(scene, &landmark.at, |pose, place| {
+            json!(used(bench, layer, pose, *place))
+        });
+        json!({"name": landmark.name, "layer": layer, "line": landmark.line, "path": false, "at": at})
     });
     let paths = scene.paths.iter().map(|path| {
-        let line = |points: &Vec<Point>| points.iter().map(point).collect::<Vec<_>>().into();
-        let at = path.at.iter().map(|at| at.as_ref().map(line)).collect();
-        json!({"name": path.name, "layer": path.layer.unwrap_or(0), "line": path.line, "path": true, "at": named(at)})
+        let layer = path.layer.unwrap_or(0);
+        let at = by_pose(scene, &path.at, |pose, line: &Vec<Point>| {
+            line.iter()
+                .map(|place| json!(used(bench, layer, pose, *place)))
+                .collect::<Vec<_>>()
+                .into()
+        });
+        json!({"name": path.name, "layer": layer, "line": path.line, "path": true, "at": at})
     });
     points.chain(paths).collect()
 }

@@ -17,6 +17,8 @@ use super::{correspondences, export, frames, gesture, grids, handles, page, pict
 
 /// Connections at a time; a browser opens six.
 const MOST_CONNECTIONS: usize = 64;
+/// How long a connection may say nothing.
+const LONGEST_SILENCE: Duration = Duration::from_secs(120);
 /// How long the state is waited for.
 const LONGEST_WAIT: Duration = Duration::from_secs(25);
 
@@ -70,6 +72,8 @@ impl Server {
 fn serve(stream: &TcpStream, gate: &Gate, session: &Arc<Session>) {
     // Without it small answers may wait for 40 ms.
     let _ = stream.set_nodelay(true);
+    // One that says nothing makes room for another.
+    let _ = stream.set_read_timeout(Some(LONGEST_SILENCE));
     let mut from = BufReader::new(stream);
     let mut to = stream;
     loop {

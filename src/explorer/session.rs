@@ -78,6 +78,8 @@ struct FileState {
 pub(crate) struct Wanted {
     pub(crate) scene: Arc<Scene>,
     pub(crate) files: DrawingFiles,
+    /// Whether it is in the middle of a drag.
+    pub(crate) is_dragged: bool,
     since: Instant,
     generation: u64,
 }
@@ -200,6 +202,7 @@ impl Session {
                 } else {
                     DrawingFiles::Unchanged
                 },
+                is_dragged: phase == Phase::Drag,
                 since: Instant::now(),
                 generation: state.generation,
             });

@@ -28,8 +28,9 @@ pub(crate) fn run(session: &Session) {
         };
         let camera_of = made.as_ref().ok().cloned();
         session.show(&wanted, made);
-        // When the shapes can be seen already.
+        // When the shapes can be seen already, and nobody waits for more.
         if let Some(bench) = camera_of
+            && !wanted.is_dragged
             && !session.is_busy()
             && let Ok(filmed) = bench.filmed_anew()
             && filmed.camera() != bench.camera()

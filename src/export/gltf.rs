@@ -18,6 +18,7 @@
 
 use serde_json::{Value, json};
 
+use super::gltf_buffer::{GltfBuffer, LINEAR, LINEAR_MIPMAP_LINEAR, container, push, without_empty_lists};
 use super::puppet_motion::{LayerMotion, PuppetMotion, PuppetReport, changes, texture_png};
 use crate::math::Point;
 use crate::render::{PuppetLayer, PuppetTexture};
@@ -29,13 +30,6 @@ pub const LAYER_GAP: f64 = 0.01;
 /// How far the camera stands before the frame, in units.
 const CAMERA_DISTANCE: f64 = 10.0;
 
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
-const UNSIGNED_SHORT: u32 = 5123;
-const UNSIGNED_INT: u32 = 5125;
-const FLOAT: u32 = 5126;
-const LINEAR: u32 = 9729;
-const LINEAR_MIPMAP_LINEAR: u32 = 9987;
 const CLAMP_TO_EDGE: u32 = 33071;
 
 /// The bytes of a `.glb` file.
@@ -63,9 +57,7 @@ pub fn gltf_bytes(motion: &PuppetMotion<'_>) -> Result<(Vec<u8>, PuppetReport), 
 /// The parts of the file so far.
 #[derive(Default)]
 struct File {
-    bytes: Vec<u8>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
+    buffer: GltfBuffer,
     images: Vec<Value>,
     materials: Vec<Value>,
     meshes: Vec<Value>,
@@ -85,10 +77,12 @@ impl File {
             return Ok(push(&mut self.nodes, json!({ "name": layer.name })));
         }
         let indices = self.add_indices(layer);
-        let base = self.add_positions(&placed(&shapes.shapes[0], motion.puppet.size));
+        let base = self
+            .buffer
+            .add_positions(&placed(&shapes.shapes[0], motion.puppet.size));
         let targets: Vec<Value> = shapes.shapes[1..]
             .iter()
-            .map(|shape| json!({ "POSITION": self.add_positions(&moves(&shapes.shapes[0], shape)) }))
+            .map(|shape| json!({ "POSITION": self.buffer.add_positions(&moves(&shapes.shapes[0], shape)) }))
             .collect();
         let weights = (!targets.is_empty()).then(|| self.add_hats(motion, shapes));
         let mut children = Vec::new();
@@ -140,7 +134,7 @@ impl File {
         for key in 1..keys.len() {
             weights[key * (keys.len() - 1) + key - 1] = 1.0;
         }
-        let output = self.add_floats(&weights, "SCALAR", None);
+        let output = self.buffer.add_scalars(&weights);
         let sampler = json!({ "input": input, "output": output, "interpolation": "LINEAR" });
         push(&mut self.samplers, sampler)
     }
@@ -159,7 +153,7 @@ impl File {
 
     fn add_steps(&mut self, motion: &PuppetMotion<'_>, node: usize, path: &str, frames: &[usize], values: &[f32]) {
         let input = self.add_times(motion, frames);
-        let output = self.add_floats(values, "VEC3", None);
+        let output = self.buffer.add_values(values.as_chunks::<3>().0);
         let sampler = json!({ "input": input, "output": output, "interpolation": "STEP" });
         let sampler = push(&mut self.samplers, sampler);
         self.add_channel(sampler, node, path);
@@ -172,81 +166,28 @@ impl File {
 
     fn add_times(&mut self, motion: &PuppetMotion<'_>, frames: &[usize]) -> usize {
         let times: Vec<f32> = frames.iter().map(|&k| motion.times[k] as f32).collect();
-        let accessor = self.add_floats(&times, "SCALAR", None);
-        self.bound(accessor, &times, 1);
-        accessor
-    }
-
-    fn add_positions(&mut self, positions: &[[f32; 3]]) -> usize {
-        let accessor = self.add_floats(positions.as_flattened(), "VEC3", Some(ARRAY_BUFFER));
-        self.bound(accessor, positions.as_flattened(), 3);
-        accessor
+        self.buffer.add_times(&times)
     }
 
     fn add_places(&mut self, texture: &PuppetTexture) -> usize {
         let (width, height) = (texture.width as f64, texture.height as f64);
-        let places: Vec<f32> = texture
+        let places: Vec<[f32; 2]> = texture
             .places
             .iter()
-            .flat_map(|p| [(p.x / width) as f32, (p.y / height) as f32])
+            .map(|p| [(p.x / width) as f32, (p.y / height) as f32])
             .collect();
-        self.add_floats(&places, "VEC2", Some(ARRAY_BUFFER))
+        self.buffer.add_attribute(&places)
     }
 
     fn add_indices(&mut self, layer: &PuppetLayer) -> usize {
         // With y up a triangle runs the other way round.
         let indices: Vec<usize> = layer.triangles.iter().flat_map(|&[a, b, c]| [a, c, b]).collect();
-        let largest = indices.iter().copied().max().unwrap_or(0);
-        // The largest value of a type is not an index but a restart.
-        let (kind, bytes): (u32, Vec<u8>) = if largest < usize::from(u16::MAX) {
-            (
-                UNSIGNED_SHORT,
-                indices.iter().flat_map(|&i| (i as u16).to_le_bytes()).collect(),
-            )
-        } else {
-            (
-                UNSIGNED_INT,
-                indices.iter().flat_map(|&i| (i as u32).to_le_bytes()).collect(),
-            )
-        };
-        let view = self.add_view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
-        let accessor = json!({ "bufferView": view, "componentType": kind, "count": indices.len(), "type": "SCALAR" });
-        push(&mut self.accessors, accessor)
-    }
-
-    fn add_floats(&mut self, values: &[f32], shape: &str, target: Option<u32>) -> usize {
-        let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-        let view = self.add_view(&bytes, target);
-        let components = match shape {
-            "VEC3" => 3,
-            "VEC2" => 2,
-            _ => 1,
-        };
-        let count = values.len() / components;
-        let accessor = json!({ "bufferView": view, "componentType": FLOAT, "count": count, "type": shape });
-        push(&mut self.accessors, accessor)
-    }
-
-    /// States the least and greatest of each component.
-    fn bound(&mut self, accessor: usize, values: &[f32], components: usize) {
-        let extreme = |component: usize, pick: fn(f32, f32) -> f32| {
-            values
-                .iter()
-                .skip(component)
-                .step_by(components)
-                .copied()
-                .reduce(pick)
-                .unwrap_or(0.0)
-        };
-        let low: Vec<f32> = (0..components).map(|c| extreme(c, f32::min)).collect();
-        let high: Vec<f32> = (0..components).map(|c| extreme(c, f32::max)).collect();
-        self.accessors[accessor]["min"] = json!(low);
-        self.accessors[accessor]["max"] = json!(high);
+        self.buffer.add_indices(&indices)
     }
 
     fn add_material(&mut self, layer: &str, texture: &PuppetTexture) -> Result<usize, String> {
         let png = texture_png(texture)?;
-        let view = self.add_view(&png, None);
+        let view = self.buffer.add_view(&png, None);
         let name = format!("{layer} {}", texture.name);
         self.images
             .push(json!({ "name": name, "bufferView": view, "mimeType": "image/png" }));
@@ -262,16 +203,6 @@ impl File {
             "extensions": { "KHR_materials_unlit": {} },
         });
         Ok(push(&mut self.materials, material))
-    }
-
-    fn add_view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
-        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        let mut view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
-        if let Some(target) = target {
-            view["target"] = json!(target);
-        }
-        self.bytes.extend_from_slice(bytes);
-        push(&mut self.views, view)
     }
 
     fn finish(
@@ -323,45 +254,17 @@ impl File {
                 "wrapS": CLAMP_TO_EDGE,
                 "wrapT": CLAMP_TO_EDGE,
             }],
-            "accessors": self.accessors,
-            "bufferViews": self.views,
-            "buffers": [{ "byteLength": self.bytes.len() }],
+            "accessors": self.buffer.accessors,
+            "bufferViews": self.buffer.views,
+            "buffers": [{ "byteLength": self.buffer.bytes.len() }],
         });
         if !self.channels.is_empty() {
             document["animations"] =
                 json!([{ "name": motion.name, "channels": self.channels, "samplers": self.samplers }]);
         }
-        // Lists may be missing, but not empty.
-        if let Some(members) = document.as_object_mut() {
-            members.retain(|_, member| member.as_array().is_none_or(|list| !list.is_empty()));
-        }
-        container(&document, self.bytes)
+        without_empty_lists(&mut document);
+        container(&document, self.buffer.bytes)
     }
-}
-
-/// Header, JSON chunk, binary chunk.
-fn container(document: &Value, mut binary: Vec<u8>) -> Result<Vec<u8>, String> {
-    let mut text = document.to_string().into_bytes();
-    text.resize(text.len().next_multiple_of(4), b' ');
-    binary.resize(binary.len().next_multiple_of(4), 0);
-    let total = 12 + 8 + text.len() + 8 + binary.len();
-    let total =
-        u32::try_from(total).map_err(|_| "the file would be larger than the format allows (4 GB)".to_owned())?;
-    let mut bytes = Vec::with_capacity(total as usize);
-    bytes.extend(b"glTF");
-    bytes.extend(2u32.to_le_bytes());
-    bytes.extend(total.to_le_bytes());
-    for (kind, chunk) in [(b"JSON", &text), (b"BIN\0", &binary)] {
-        bytes.extend((chunk.len() as u32).to_le_bytes());
-        bytes.extend(kind);
-        bytes.extend(chunk);
-    }
-    Ok(bytes)
-}
-
-fn push(list: &mut Vec<Value>, value: Value) -> usize {
-    list.push(value);
-    list.len() - 1
 }
 
 fn placed(positions: &[Point], size: [usize; 2]) -> Vec<[f32; 3]> {

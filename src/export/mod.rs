@@ -1,5 +1,5 @@
 //! Writers, one a format: PNG, PNG sequences, GIF, APNG, WebP, sprite sheets; MP4 and WebM by way of ffmpeg; SVG, animated SVG,
-//! Lottie; glTF, Spine.
+//! Lottie; glTF, Spine; of forms in space OBJ and glTF.
 //!
 //! Every file is written under a temporary name beside its target and renamed when it is complete
 //! ([`PendingFile`]), so a run that is killed leaves no torn file, and a run that fails leaves none at all.
@@ -9,15 +9,19 @@ mod changes;
 mod ffmpeg;
 mod gif;
 mod gltf;
+mod gltf_buffer;
 mod keyed;
 mod keys;
 mod lottie;
+mod obj;
 mod palette;
 mod pending;
 mod png;
 mod puppet_motion;
 pub mod runtime;
 mod sequence;
+mod shape_gltf;
+mod shape_keys;
 mod smil;
 mod spine;
 mod sprites;
@@ -31,11 +35,14 @@ pub use gif::{Backdrop, GifWriter};
 pub use gltf::{LAYER_GAP, PIXELS_A_UNIT, gltf_bytes};
 pub use keyed::{KeyOptions, KeyReport, KeyedError, KeyedVector, SampleTiming};
 pub use keys::{Keys, place_keys};
+pub use obj::{ObjForm, ObjTexture, mtl_text, obj_text, write_obj};
 pub use palette::{ColourCount, Palette};
 pub use pending::PendingFile;
 pub use png::{Label, png_bytes, png_bytes_with};
 pub use puppet_motion::{PuppetMotion, PuppetReport, texture_png};
 pub use sequence::{Sequence, SequenceKind};
+pub use shape_gltf::shape_gltf_bytes;
+pub use shape_keys::{ShapeMotion, ShapeReport, ShapeState};
 pub use spine::{SpineFiles, spine_files, write_spine};
 pub use sprites::SpriteSheet;
 pub use svg::{svg_text, svg_text_with};

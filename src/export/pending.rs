@@ -101,6 +101,14 @@ impl PendingFile {
         Ok(())
     }
 
+    /// A file that holds `bytes` and awaits its commit.
+    pub(super) fn filled(target: &Path, bytes: &[u8]) -> Result<Self, ExportError> {
+        let mut file = Self::create_among_others(target)?;
+        file.write_all(bytes)
+            .map_err(|error| ExportError::cannot_write(target, error))?;
+        Ok(file)
+    }
+
     /// Writes `bytes` as a whole file.
     ///
     /// # Errors

@@ -81,8 +81,13 @@ pub fn png_bytes_with(frame: &Frame, label: &Label) -> Result<Vec<u8>, String> {
 }
 
 fn encoded(frame: &Frame, label: Option<&Label>) -> Result<Vec<u8>, String> {
+    straight_png_bytes([frame.width, frame.height], &frame.straight(), label)
+}
+
+/// The bytes of a PNG file from those of its pixels, colours not multiplied by alpha.
+pub(super) fn straight_png_bytes(size: [usize; 2], pixels: &[u8], label: Option<&Label>) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, frame.width as u32, frame.height as u32);
+    let mut encoder = png::Encoder::new(&mut bytes, size[0] as u32, size[1] as u32);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Balanced);
@@ -92,9 +97,7 @@ fn encoded(frame: &Frame, label: Option<&Label>) -> Result<Vec<u8>, String> {
             .map_err(|error| error.to_string())?;
     }
     let mut writer = encoder.write_header().map_err(|error| error.to_string())?;
-    writer
-        .write_image_data(&frame.straight())
-        .map_err(|error| error.to_string())?;
+    writer.write_image_data(pixels).map_err(|error| error.to_string())?;
     writer.finish().map_err(|error| error.to_string())?;
     Ok(bytes)
 }

@@ -1,6 +1,7 @@
 //! What formats of deformed meshes need of an animated [`Puppet`]: keys, hidden stretches, pictures as files.
 
 use super::keys::{Keys, place_keys};
+use super::png::straight_png_bytes;
 use crate::math::Point;
 use crate::math::point::is_finite;
 use crate::render::{Puppet, PuppetFrame, PuppetLayer, PuppetTexture};
@@ -187,17 +188,7 @@ fn check_layer(layer: &PuppetLayer) -> Result<(), String> {
 /// # Errors
 /// The encoder's message, for a texture without pixels.
 pub fn texture_png(texture: &PuppetTexture) -> Result<Vec<u8>, String> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, texture.width as u32, texture.height as u32);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Balanced);
-    let mut writer = encoder.write_header().map_err(|error| error.to_string())?;
-    writer
-        .write_image_data(texture.pixels.as_flattened())
-        .map_err(|error| error.to_string())?;
-    writer.finish().map_err(|error| error.to_string())?;
-    Ok(bytes)
+    straight_png_bytes([texture.width, texture.height], texture.pixels.as_flattened(), None)
 }
 
 /// Where values that are held from one frame to the next change: the first frame, and each that differs from the one before.

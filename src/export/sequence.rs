@@ -1,4 +1,4 @@
-//! Numbered files in a folder: PNG or SVG.
+//! Numbered files in a folder: PNG, SVG or OBJ.
 
 use std::path::{Path, PathBuf};
 
@@ -14,6 +14,8 @@ pub enum SequenceKind {
     Png,
     /// Curves.
     Svg,
+    /// Forms in space.
+    Obj,
 }
 
 impl SequenceKind {
@@ -21,6 +23,7 @@ impl SequenceKind {
         match self {
             Self::Png => "png",
             Self::Svg => "svg",
+            Self::Obj => "obj",
         }
     }
 }
@@ -61,13 +64,14 @@ impl Sequence {
             .join(format!("{}.{number:04}.{}", self.name, self.kind.suffix()))
     }
 
-    /// Whether the file of frame `number` is there, whole and with this label.
+    /// Whether the file of frame `number` is there, whole and with this label. Forms carry none.
     #[must_use]
     pub fn has(&self, number: usize, label: &Label) -> bool {
         let path = self.path(number);
         match self.kind {
             SequenceKind::Png => label.is_on(&path),
             SequenceKind::Svg => label.is_on_svg(&path),
+            SequenceKind::Obj => false,
         }
     }
 

@@ -10,6 +10,7 @@ mod decode;
 mod drawing;
 mod error;
 mod iso_line;
+mod obj;
 mod path;
 mod picture;
 mod svg;
@@ -21,8 +22,9 @@ pub use art::{Art, ArtElement};
 pub use bitmap::{BitmapOptions, HoleRule, open_bitmap, read_bitmap};
 pub use drawing::{Drawing, InputNote};
 pub use error::InputError;
+pub use obj::{ObjError, ObjForm, ObjProblem, open_obj, read_obj};
 pub use path::{
     Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke, Subpath,
 };
-pub use picture::Picture;
+pub use picture::{Picture, read_picture};
 pub use svg::{Extent, SvgOptions, open_svg, read_svg};

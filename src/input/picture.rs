@@ -1,5 +1,7 @@
 //! A drawing's pixels.
 
+use super::InputError;
+use super::decode::decode;
 use crate::math::Point;
 
 /// A premultiplied RGBA image with its place in the source's coordinates.
@@ -29,4 +31,21 @@ impl std::fmt::Debug for Picture {
             .field("pixels_per_unit", &self.pixels_per_unit)
             .finish_non_exhaustive()
     }
+}
+
+/// A picture as it is in the bytes of an image file, nothing taken out.
+///
+/// # Errors
+/// [`InputError`] if it is no image of a known kind and a sensible size.
+pub fn read_picture(bytes: &[u8]) -> Result<Picture, InputError> {
+    let image = decode(bytes)?;
+    let times = |c: u8, alpha: u8| ((u16::from(c) * u16::from(alpha) + 127) / 255) as u8;
+    let premultiplied = |[r, g, b, a]: [u8; 4]| [times(r, a), times(g, a), times(b, a), a];
+    Ok(Picture {
+        width: image.width() as usize,
+        height: image.height() as usize,
+        pixels: image.pixels().map(|pixel| premultiplied(pixel.0)).collect(),
+        origin: Point::zeros(),
+        pixels_per_unit: 1.0,
+    })
 }

@@ -121,9 +121,6 @@ fn curves(scene: &Scene, drawings: &mut [Drawing], drawn_on: &[usize]) -> Option
 /// The drawing that each pose shows, by its place among those that are drawn.
 fn drawing_of_poses(scene: &Scene) -> Vec<usize> {
     let drawn = scene.drawn_poses();
-    let shown = |pose: usize| {
-        let root = scene.drawing_of(pose).map(|(root, _)| root);
-        drawn.iter().position(|&pose| Some(pose) == root).unwrap_or(0)
-    };
-    (0..scene.poses.len()).map(shown).collect()
+    let drawing = |original: usize| drawn.iter().position(|&pose| pose == original).unwrap_or(0);
+    scene.originals().into_iter().map(drawing).collect()
 }

@@ -24,7 +24,8 @@ pub enum ColourBlend {
 
 impl ColourBlend {
     /// What is averaged of a channel from 0 to 1.
-    pub(super) fn light_of(self, value: f64) -> f64 {
+    #[must_use]
+    pub fn light_of(self, value: f64) -> f64 {
         match self {
             Self::Plain => value,
             Self::Linear if value <= 0.040_45 => value / 12.92,
@@ -33,7 +34,8 @@ impl ColourBlend {
     }
 
     /// The channel of which [`Self::light_of`] is `light`.
-    pub(super) fn value_of(self, light: f64) -> f64 {
+    #[must_use]
+    pub fn value_of(self, light: f64) -> f64 {
         match self {
             Self::Plain => light,
             Self::Linear if light <= 0.003_130_8 => light * 12.92,

@@ -12,6 +12,7 @@
 use std::ops::Range;
 
 use crate::math::Point;
+use crate::outline::{Outline, Ring};
 
 /// The covered area of each pixel of a grid.
 #[derive(Debug, Clone)]
@@ -35,6 +36,14 @@ impl Coverage {
             rows.for_each_run(row, |columns, area| areas[columns].fill(area));
         }
         Self { width, height, areas }
+    }
+
+    /// The coverage of a grid by the inside of an outline, whose points `place` takes to pixels.
+    #[must_use]
+    pub fn of_outline(outline: &Outline, place: impl Fn(Point) -> Point, width: usize, height: usize) -> Self {
+        let polygon = |ring: &Ring| -> Vec<Point> { ring.points().iter().map(|p| place(*p)).collect() };
+        let polygons: Vec<Vec<Point>> = outline.rings().iter().map(polygon).collect();
+        Self::of(polygons.iter().map(Vec::as_slice), width, height)
     }
 
     /// Columns.

@@ -27,16 +27,7 @@ impl Frame {
     /// The pixels with colours not multiplied by alpha, as most file formats store them.
     #[must_use]
     pub fn straight(&self) -> Vec<u8> {
-        let mut bytes = Vec::with_capacity(self.pixels.len() * 4);
-        for [r, g, b, a] in &self.pixels {
-            let divided = |c: u8| match *a {
-                0 => 0,
-                255 => c,
-                a => ((u32::from(c) * 255 + u32::from(a) / 2) / u32::from(a)).min(255) as u8,
-            };
-            bytes.extend([divided(*r), divided(*g), divided(*b), *a]);
-        }
-        bytes
+        self.pixels.iter().flat_map(|pixel| straight(*pixel)).collect()
     }
 
     /// Puts the picture in front of a colour: red, green, blue, alpha, not premultiplied.
@@ -88,6 +79,16 @@ impl std::fmt::Debug for Frame {
             .field("height", &self.height)
             .finish_non_exhaustive()
     }
+}
+
+/// A pixel whose colours are no longer multiplied by its alpha; black where it is clear.
+pub(super) fn straight([r, g, b, a]: [u8; 4]) -> [u8; 4] {
+    let divided = |c: u8| match a {
+        0 => 0,
+        255 => c,
+        a => ((u32::from(c) * 255 + u32::from(a) / 2) / u32::from(a)).min(255) as u8,
+    };
+    [divided(r), divided(g), divided(b), a]
 }
 
 fn premultiplied([r, g, b, a]: [u8; 4]) -> [u8; 4] {

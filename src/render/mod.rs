@@ -6,6 +6,8 @@
 //! edge ([`Texture`]), and the one edge of the frame is drawn with the exact area that it covers of each pixel
 //! ([`coverage`]).
 
+mod affine_map;
+mod band;
 mod camera;
 mod colour_blend;
 pub mod coverage;
@@ -20,6 +22,7 @@ mod puppet_texture;
 pub mod raster;
 mod reached;
 mod sampler;
+pub mod shaded;
 mod silhouette;
 mod texture;
 

@@ -3,6 +3,16 @@
 //! Two sweeps over the picture pass on the nearest seed known so far to the eight neighbours (Danielsson 1980). The
 //! distance is exact but for rare ties at a fraction of a pixel. Cost O(#pixels).
 
+/// The squared distance between two pixels of a grid, given by their indices, row by row.
+pub(super) fn distance_squared(pixel: usize, seed: u32, width: usize) -> f64 {
+    let seed = seed as usize;
+    let (dx, dy) = (
+        (pixel % width).abs_diff(seed % width),
+        (pixel / width).abs_diff(seed / width),
+    );
+    (dx * dx + dy * dy) as f64
+}
+
 /// For each pixel of a grid, row by row, the index of the nearest pixel with `is_seed`; `None` if there is no seed.
 pub(super) fn nearest_seeds(width: usize, height: usize, is_seed: impl Fn(usize) -> bool) -> Option<Vec<u32>> {
     const NONE: u32 = u32::MAX;

@@ -12,7 +12,8 @@
 //! edges of all the drawings that they show.
 
 use super::coverage::Coverage;
-use super::nearest_seed::nearest_seeds;
+use super::frame::straight;
+use super::nearest_seed::{distance_squared, nearest_seeds};
 use super::puppet::PuppetTexture;
 use crate::input::Picture;
 use crate::math::{Point, point};
@@ -133,30 +134,18 @@ impl Canvas {
     }
 
     fn clear_beyond(&mut self, outline: &Outline) {
-        let rings: Vec<Vec<Point>> = outline
-            .rings()
-            .iter()
-            .map(|ring| ring.points().iter().map(|p| self.place(*p)).collect())
-            .collect();
-        let coverage = Coverage::of(rings.iter().map(Vec::as_slice), self.width, self.height);
+        let coverage = Coverage::of_outline(outline, |p| self.place(p), self.width, self.height);
         let Some(nearest) = nearest_seeds(self.width, self.height, |i| coverage.areas()[i] > 0.0) else {
             return;
         };
         for (i, seed) in nearest.iter().enumerate() {
-            let seed = *seed as usize;
-            let dx = (i % self.width).abs_diff(seed % self.width);
-            let dy = (i / self.width).abs_diff(seed / self.width);
-            if (dx * dx + dy * dy) as f64 > EDGE_PX * EDGE_PX {
+            if distance_squared(i, *seed, self.width) > EDGE_PX * EDGE_PX {
                 self.pixels[i] = [0; 4];
             }
         }
     }
 
     fn straight(&self) -> Vec<[u8; 4]> {
-        let straight = |[r, g, b, a]: [u8; 4]| {
-            let divided = |c: u8| ((u32::from(c) * 255 + u32::from(a) / 2) / u32::from(a.max(1))).min(255) as u8;
-            [divided(r), divided(g), divided(b), a]
-        };
         let faintest = self.pixels.iter().map(|p| p[3]).max().unwrap_or(0).min(FAINTEST);
         let nearest = nearest_seeds(self.width, self.height, |i| {
             faintest > 0 && self.pixels[i][3] >= faintest

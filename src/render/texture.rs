@@ -16,7 +16,7 @@
 
 use super::coverage::Coverage;
 use super::level::{Level, MOST_TEXELS};
-use super::nearest_seed::nearest_seeds;
+use super::nearest_seed::{distance_squared, nearest_seeds};
 use crate::input::Picture;
 use crate::math::Point;
 use crate::outline::Outline;
@@ -124,23 +124,14 @@ impl Texture {
 
     fn bleed(&mut self, outline: &Outline) {
         let (width, height) = (self.levels[0].width(), self.levels[0].height());
-        let rings: Vec<Vec<Point>> = outline
-            .rings()
-            .iter()
-            .map(|ring| ring.points().iter().map(|p| self.to_texels(*p)).collect())
-            .collect();
-        let coverage = Coverage::of(rings.iter().map(Vec::as_slice), width, height);
+        let coverage = Coverage::of_outline(outline, |p| self.to_texels(p), width, height);
         /// Below this a pixel is not wholly inside; above it only rounding is missing.
         const WHOLLY: f32 = 0.999;
         let inside = |i: usize| coverage.areas()[i] >= WHOLLY;
         let Some(border) = nearest_seeds(width, height, |i| !inside(i)) else {
             return;
         };
-        let depth_squared = |i: usize| {
-            let seed = border[i] as usize;
-            let (dx, dy) = ((i % width).abs_diff(seed % width), (i / width).abs_diff(seed / width));
-            (dx * dx + dy * dy) as f64
-        };
+        let depth_squared = |i: usize| distance_squared(i, border[i], width);
         let pixels = self.levels[0].texels_mut();
         let original = pixels.to_vec();
         let mut coloured = vec![false; original.len()];

@@ -21,7 +21,7 @@ use super::settings::{
 /// The version of the format.
 const VERSION: i64 = 1;
 /// The largest absolute coordinate of the pose space: beyond it the products of the weights' systems lose all digits.
-const LARGEST_PLACE: f64 = 1e6;
+pub(super) const LARGEST_PLACE: f64 = 1e6;
 
 impl Scene {
     /// Reads a scene file.
@@ -29,14 +29,7 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with the file and the line.
     pub fn open(file: &Path) -> Result<Self, SceneError> {
-        let text = std::fs::read_to_string(file).map_err(|error| SceneError {
-            file: file.to_owned(),
-            line: None,
-            problem: SceneProblem::Unreadable {
-                reason: error.to_string(),
-            },
-        })?;
-        Self::parse(&text, file)
+        Self::parse(&text_of(file)?, file)
     }
 
     /// Reads the text of a scene file; `file` is its path, which sources are relative to and errors name. No file is
@@ -49,28 +42,52 @@ impl Scene {
             text,
             file: file.to_owned(),
         };
-        let written: SceneFile = toml::from_str(text).map_err(|error| {
-            let at = error.span().map_or(0, |span| span.start);
-            reader.fail(at, SceneProblem::Format(error.message().trim_end().replace('\n', "; ")))
-        })?;
-        reader.scene(written)
+        reader.scene(reader.written()?)
     }
 }
 
-struct Reader<'a> {
-    text: &'a str,
-    file: PathBuf,
+/// The text of a scene file.
+pub(super) fn text_of(file: &Path) -> Checked<String> {
+    std::fs::read_to_string(file).map_err(|error| SceneError {
+        file: file.to_owned(),
+        line: None,
+        problem: SceneProblem::Unreadable {
+            reason: error.to_string(),
+        },
+    })
 }
 
-type Checked<T> = Result<T, SceneError>;
+/// A scene file's text, and what to say when something in it is wrong.
+pub(super) struct Reader<'a> {
+    pub(super) text: &'a str,
+    pub(super) file: PathBuf,
+}
+
+pub(super) type Checked<T> = Result<T, SceneError>;
 
 impl Reader<'_> {
-    fn line(&self, at: usize) -> usize {
+    /// What stands in the file, names and types of keys checked.
+    pub(super) fn written<T: serde::de::DeserializeOwned>(&self) -> Checked<T> {
+        toml::from_str(self.text).map_err(|error| {
+            let at = error.span().map_or(0, |span| span.start);
+            self.fail(at, SceneProblem::Format(error.message().trim_end().replace('\n', "; ")))
+        })
+    }
+
+    /// Refuses another version of the format.
+    pub(super) fn check_version(&self, version: &Spanned<i64>) -> Checked<()> {
+        match *version.get_ref() {
+            VERSION => Ok(()),
+            found => Err(self.fail(version.span().start, SceneProblem::Version { found })),
+        }
+    }
+
+    pub(super) fn line(&self, at: usize) -> usize {
         let upto = at.min(self.text.len());
         1 + self.text.as_bytes()[..upto].iter().filter(|b| **b == b'\n').count()
     }
 
-    fn fail(&self, at: usize, problem: SceneProblem) -> SceneError {
+    pub(super) fn fail(&self, at: usize, problem: SceneProblem) -> SceneError {
         SceneError {
             file: self.file.clone(),
             line: Some(self.line(at)),
@@ -89,10 +106,7 @@ impl Reader<'_> {
     }
 
     fn scene(&self, written: SceneFile) -> Checked<Scene> {
-        let version = *written.version.get_ref();
-        if version != VERSION {
-            return Err(self.fail(written.version.span().start, SceneProblem::Version { found: version }));
-        }
+        self.check_version(&written.version)?;
         let layer_names = self.layer_names(&written.layer)?;
         let poses = self.poses(&written.pose, &layer_names)?;
         let names: Vec<&str> = poses.iter().map(|p| p.name.as_str()).collect();
@@ -175,7 +189,7 @@ impl Reader<'_> {
         Ok(scene)
     }
 
-    fn number(
+    pub(super) fn number(
         &self,
         value: &Option<Spanned<f64>>,
         key: &str,
@@ -197,7 +211,7 @@ impl Reader<'_> {
         }
     }
 
-    fn choice<T: Copy + Default>(
+    pub(super) fn choice<T: Copy + Default>(
         &self,
         value: &Option<Spanned<String>>,
         key: &str,

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use super::shape::ShapeProblem;
+
 /// A problem of a scene file and its place.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}{}: {problem}", file.display(), line.map(|l| format!(":{l}")).unwrap_or_default())]
@@ -154,4 +156,7 @@ pub enum SceneProblem {
         /// The time before.
         before: f64,
     },
+    /// Something that only scenes of shapes in space have.
+    #[error(transparent)]
+    Shape(#[from] ShapeProblem),
 }

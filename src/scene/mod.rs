@@ -13,6 +13,7 @@ mod file;
 mod layers;
 mod new;
 mod settings;
+mod shape;
 mod source;
 
 pub use animation::{Animation, Key};
@@ -23,4 +24,8 @@ pub use settings::{
     Anchor, ArtChoice, Background, BlendSettings, ColourBlend, DeformedCopy, DrawnSource, Extent, Facing, HandleMove,
     Holes, InputSettings, Layout, MeshSettings, PoseSource, PoseSpaceSettings, Provider, PseudoPose, Radial, Region,
     Scene, SceneLandmark, ScenePath, ScenePose, SoftAnchor, WeightRange,
+};
+pub use shape::{
+    AxisSettings, JointSettings, JointTurn, PseudoExample, ShapeExample, ShapeFile, ShapeProblem, ShapeScene,
+    SheetSettings, SkeletonSettings, SubdivisionSettings, Subject, SurfacePoints,
 };

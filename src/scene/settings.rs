@@ -1,7 +1,7 @@
 //! The validated scene.
 
 use crate::blend::{FrameGuard, Reference, Stretch};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{Animation, SceneLayer};
 use crate::math::Point;
@@ -420,16 +420,20 @@ impl Scene {
     /// A short name for files made from this scene: the file's own, or its folder's if it is called `scene.toml`.
     #[must_use]
     pub fn short_name(&self) -> String {
-        let stem = self.file.file_stem().map(|s| s.to_string_lossy().into_owned());
-        let folder = self
-            .file
-            .parent()
-            .and_then(|p| p.file_name())
-            .map(|s| s.to_string_lossy().into_owned());
-        match (stem, folder) {
-            (Some(stem), Some(folder)) if stem == "scene" => folder,
-            (Some(stem), _) => stem,
-            _ => "scene".to_owned(),
-        }
+        short_name(&self.file)
+    }
+}
+
+/// A short name for files made from the scene in `file`.
+pub(super) fn short_name(file: &Path) -> String {
+    let stem = file.file_stem().map(|s| s.to_string_lossy().into_owned());
+    let folder = file
+        .parent()
+        .and_then(|p| p.file_name())
+        .map(|s| s.to_string_lossy().into_owned());
+    match (stem, folder) {
+        (Some(stem), Some(folder)) if stem == "scene" => folder,
+        (Some(stem), _) => stem,
+        _ => "scene".to_owned(),
     }
 }

@@ -1,7 +1,7 @@
 //! Linear systems: sparse assembly, Cholesky factored once and solved often, small dense solves.
 //!
 //! Everything here is sequential, so results do not depend on the number of threads. The libraries that do the work
-//! (sprs, faer, nalgebra) stay hidden.
+//! (sprs, faer) stay hidden.
 
 mod cholesky;
 mod dense;

@@ -60,20 +60,6 @@ impl Layout {
         let (low, high) = self.bounds();
         distance(&low, &high)
     }
-
-    /// The distance from each pose to its nearest neighbour; 1 for a pose that is alone.
-    pub(super) fn nearest_neighbours(&self) -> Vec<f64> {
-        if self.len() == 1 {
-            return vec![1.0];
-        }
-        let nearest = |k: usize| {
-            let others = (0..self.len()).filter(move |&other| other != k);
-            others
-                .map(|other| distance(&self.places[k], &self.places[other]))
-                .fold(f64::INFINITY, f64::min)
-        };
-        (0..self.len()).map(nearest).collect()
-    }
 }
 
 /// The Euclidean distance.

@@ -22,7 +22,7 @@
 //! rounding.
 //!
 //! Cost: O((poses + pseudo-poses)^3) to build, O(poses + pseudo-poses) a weight to ask: the small system is solved again
-//! when poses are moved, inserted and removed, in microseconds for a dozen. Many places at once are evaluated in lanes,
+//! when poses are moved, inserted and removed, in ten microseconds for a dozen; other pseudo-poses leave the fit without them as it is. Many places at once are evaluated in lanes,
 //! with the same results to the last bit.
 
 mod fit;
@@ -81,7 +81,10 @@ pub struct RbfOptions {
 pub struct RbfWeights {
     places: Vec<Vec<f64>>,
     options: RbfOptions,
-    fitted: Fitted,
+    /// Without pseudo-poses.
+    plain: Fitted,
+    /// With them.
+    bent: Option<Fitted>,
 }
 
 impl RbfWeights {
@@ -91,10 +94,12 @@ impl RbfWeights {
     /// [`WeightError`] if there is no pose, two examples coincide, a coordinate is not finite, dimensions differ, or
     /// the system is singular or nearly so.
     pub fn new(places: &[Vec<f64>], options: &RbfOptions) -> Result<Self, WeightError> {
+        let plain = plainly_fitted(places, options.radial)?;
         Ok(Self {
+            bent: bent(&plain, places, options.radial, &options.pseudo_poses)?,
+            plain,
             places: places.to_vec(),
             options: options.clone(),
-            fitted: fitted(places, options)?,
         })
     }
 
@@ -104,7 +109,8 @@ impl RbfWeights {
     /// As [`Self::new`], and [`WeightError::NoSuchPose`].
     pub fn move_pose(&mut self, pose: usize, place: &[f64]) -> Result<(), WeightError> {
         check_pose(pose, self.places.len())?;
-        self.edit(|places| places[pose] = place.to_vec())
+        let before = std::mem::replace(&mut self.places[pose], place.to_vec());
+        self.fit_again().inspect_err(|_| self.places[pose].clone_from(&before))
     }
 
     /// Adds a pose after the last one. On an error nothing has changed.
@@ -112,7 +118,8 @@ impl RbfWeights {
     /// # Errors
     /// As [`Self::new`].
     pub fn insert_pose(&mut self, place: &[f64]) -> Result<(), WeightError> {
-        self.edit(|places| places.push(place.to_vec()))
+        self.places.push(place.to_vec());
+        self.fit_again().inspect_err(|_| drop(self.places.pop()))
     }
 
     /// Removes a pose; later ones move up by one. On an error nothing has changed.
@@ -121,7 +128,9 @@ impl RbfWeights {
     /// As [`Self::new`], and [`WeightError::NoSuchPose`].
     pub fn remove_pose(&mut self, pose: usize) -> Result<(), WeightError> {
         check_pose(pose, self.places.len())?;
-        self.edit(|places| drop(places.remove(pose)))
+        let before = self.places.remove(pose);
+        self.fit_again()
+            .inspect_err(|_| self.places.insert(pose, before.clone()))
     }
 
     /// Replaces the pseudo-poses. On an error nothing has changed.
@@ -129,11 +138,8 @@ impl RbfWeights {
     /// # Errors
     /// As [`Self::new`].
     pub fn set_pseudo_poses(&mut self, pseudo_poses: Vec<PseudoPose>) -> Result<(), WeightError> {
-        let options = RbfOptions {
-            pseudo_poses,
-            ..self.options.clone()
-        };
-        *self = Self::new(&self.places, &options)?;
+        self.bent = bent(&self.plain, &self.places, self.options.radial, &pseudo_poses)?;
+        self.options.pseudo_poses = pseudo_poses;
         Ok(())
     }
 
@@ -143,46 +149,61 @@ impl RbfWeights {
         &self.places
     }
 
+    /// The pseudo-poses.
+    #[must_use]
+    pub fn pseudo_poses(&self) -> &[PseudoPose] {
+        &self.options.pseudo_poses
+    }
+
     /// By how much the fit may magnify rounding errors: the condition number of its system, in the 1-norm.
     #[must_use]
     pub fn condition(&self) -> f64 {
-        self.fitted.condition()
+        self.fitted().condition()
     }
 
-    fn edit(&mut self, change: impl FnOnce(&mut Vec<Vec<f64>>)) -> Result<(), WeightError> {
-        let mut places = self.places.clone();
-        change(&mut places);
-        self.fitted = fitted(&places, &self.options)?;
-        self.places = places;
+    fn fitted(&self) -> &Fitted {
+        self.bent.as_ref().unwrap_or(&self.plain)
+    }
+
+    fn fit_again(&mut self) -> Result<(), WeightError> {
+        let plain = plainly_fitted(&self.places, self.options.radial)?;
+        self.bent = bent(&plain, &self.places, self.options.radial, &self.options.pseudo_poses)?;
+        self.plain = plain;
         Ok(())
     }
 }
 
-fn fitted(places: &[Vec<f64>], options: &RbfOptions) -> Result<Fitted, WeightError> {
+fn plainly_fitted(places: &[Vec<f64>], radial: Radial) -> Result<Fitted, WeightError> {
     let poses = Layout::new(places)?;
-    let (pose_count, dimension) = (poses.len(), poses.dimension());
-    let own = DenseMatrix::from_fn(pose_count, pose_count, |row, column| f64::from(u8::from(row == column)));
-    let plain = Fitted::new(&poses, &own, options.radial)?;
-    if options.pseudo_poses.is_empty() {
-        return Ok(plain);
+    let own = DenseMatrix::from_fn(poses.len(), poses.len(), |row, column| {
+        f64::from(u8::from(row == column))
+    });
+    Fitted::new(&poses, &own, radial)
+}
+
+/// The fit with pseudo-poses, if there are any.
+fn bent(
+    plain: &Fitted,
+    places: &[Vec<f64>],
+    radial: Radial,
+    pseudo_poses: &[PseudoPose],
+) -> Result<Option<Fitted>, WeightError> {
+    if pseudo_poses.is_empty() {
+        return Ok(None);
     }
+    let pose_count = places.len();
     let mut examples = places.to_vec();
-    let mut wanted = Vec::with_capacity(options.pseudo_poses.len());
-    for pseudo in &options.pseudo_poses {
-        check_place(&pseudo.at, dimension)?;
-        check_place(&pseudo.from, dimension)?;
-        let mut weights = vec![0.0; pose_count];
-        plain.weights(pseudo.from.as_chunks::<1>().0, weights.as_chunks_mut::<1>().0);
-        wanted.push(weights);
+    let mut wanted = DenseMatrix::from_fn(pose_count + pseudo_poses.len(), pose_count, |row, column| {
+        f64::from(u8::from(row == column))
+    });
+    for (row, pseudo) in (pose_count..).zip(pseudo_poses) {
+        check_place(&pseudo.at, plain.dimension())?;
+        check_place(&pseudo.from, plain.dimension())?;
+        let weights = wanted.row_mut(row).as_chunks_mut::<1>().0;
+        plain.weights(pseudo.from.as_chunks::<1>().0, weights);
         examples.push(pseudo.at.clone());
     }
-    let data = DenseMatrix::from_fn(examples.len(), pose_count, |row, column| {
-        match row.checked_sub(pose_count) {
-            Some(pseudo) => wanted[pseudo][column],
-            None => f64::from(u8::from(row == column)),
-        }
-    });
-    Fitted::new(&Layout::new(&examples)?, &data, options.radial)
+    Fitted::new(&Layout::new(&examples)?, &wanted, radial).map(Some)
 }
 
 impl WeightProvider for RbfWeights {
@@ -191,14 +212,14 @@ impl WeightProvider for RbfWeights {
     }
 
     fn dimension(&self) -> usize {
-        self.fitted.dimension()
+        self.plain.dimension()
     }
 
     fn weights(&self, at: &[f64], weights: &mut Vec<f64>) -> Result<(), WeightError> {
         check_place(at, self.dimension())?;
         weights.clear();
         weights.resize(self.pose_count(), 0.0);
-        self.fitted
+        self.fitted()
             .weights(at.as_chunks::<1>().0, weights.as_chunks_mut::<1>().0);
         if weights.iter().all(|weight| weight.is_finite()) {
             Ok(())
@@ -222,7 +243,7 @@ impl WeightProvider for RbfWeights {
                     along[lane] = *coordinate;
                 }
             }
-            vectorised(|| self.fitted.weights(&coordinates, &mut found));
+            vectorised(|| self.fitted().weights(&coordinates, &mut found));
             for (lane, row) in out.chunks_exact_mut(pose_count).enumerate() {
                 for (weight, found) in row.iter_mut().zip(&found) {
                     *weight = found[lane];

@@ -10,19 +10,19 @@ use crate::render::Frame;
 const LETTER_SHARE: f64 = 0.75;
 
 /// A white sheet to draw on.
-pub(super) struct Canvas {
+pub(in crate::render) struct Canvas {
     pixmap: Pixmap,
 }
 
 impl Canvas {
-    pub(super) fn new(width: u32, height: u32) -> Option<Self> {
+    pub(in crate::render) fn new(width: u32, height: u32) -> Option<Self> {
         let mut pixmap = Pixmap::new(width, height)?;
         pixmap.fill(Color::WHITE);
         Some(Self { pixmap })
     }
 
     /// A line through points, closed if asked to be by repeating the first.
-    pub(super) fn line(&mut self, points: &[Point], width: f64, colour: Color) {
+    pub(in crate::render) fn line(&mut self, points: &[Point], width: f64, colour: Color) {
         let mut builder = PathBuilder::new();
         for (k, p) in points.iter().filter(|p| point::is_finite(**p)).enumerate() {
             if k == 0 {
@@ -43,7 +43,7 @@ impl Canvas {
     }
 
     /// A filled polygon.
-    pub(super) fn fill(&mut self, points: &[Point], colour: Color) {
+    pub(in crate::render) fn fill(&mut self, points: &[Point], colour: Color) {
         let mut builder = PathBuilder::new();
         for (k, p) in points.iter().enumerate() {
             if k == 0 {
@@ -60,7 +60,7 @@ impl Canvas {
     }
 
     /// A dot with a thin white rim.
-    pub(super) fn dot(&mut self, centre: Point, radius: f64, colour: Color) {
+    pub(in crate::render) fn dot(&mut self, centre: Point, radius: f64, colour: Color) {
         for (r, c) in [(radius + 1.0, Color::WHITE), (radius, colour)] {
             if let Some(path) = PathBuilder::from_circle(centre.x as f32, centre.y as f32, r as f32) {
                 self.pixmap
@@ -111,8 +111,54 @@ impl Canvas {
     }
 
     /// How wide and high [`Self::text`] of some height is, in pixels.
-    pub(super) fn text_size(words: &str, height: f64) -> Point {
+    pub(in crate::render) fn text_size(words: &str, height: f64) -> Point {
         stroke_font::size(words) * (LETTER_SHARE * height)
+    }
+
+    /// Words from their upper left corner, as they are.
+    pub(in crate::render) fn words(&mut self, words: &str, [left, top]: [f64; 2], height: f64, colour: Color) {
+        let middle = Point::new(left, top) + Self::text_size(words, height) * 0.5;
+        self.words_along(words, middle, Point::x(), height, colour);
+    }
+
+    /// Words whose middle is at a place, as they are.
+    pub(in crate::render) fn words_around(&mut self, words: &str, middle: Point, height: f64, colour: Color) {
+        self.words_along(words, middle, Point::x(), height, colour);
+    }
+
+    /// Words whose middle is at a place and that run along a unit direction, as they are.
+    pub(in crate::render) fn words_along(
+        &mut self,
+        words: &str,
+        middle: Point,
+        along: Point,
+        height: f64,
+        colour: Color,
+    ) {
+        let half = Self::text_size(words, height) * 0.5;
+        let down = Point::new(-along.y, along.x);
+        for stroke in stroke_font::strokes(words) {
+            let place = |p: &Point| {
+                let from_middle = p * (LETTER_SHARE * height) - half;
+                middle + along * from_middle.x + down * from_middle.y
+            };
+            let points: Vec<Point> = stroke.iter().map(place).collect();
+            self.line(&points, 0.12 * height, colour);
+        }
+    }
+
+    /// Puts a picture with its upper left corner at a pixel.
+    pub(in crate::render) fn paste(&mut self, picture: &Frame, [left, top]: [usize; 2]) {
+        let Some(size) = tiny_skia::IntSize::from_wh(picture.width as u32, picture.height as u32) else {
+            return;
+        };
+        let bytes = picture.pixels.as_flattened().to_vec();
+        if let Some(pixmap) = Pixmap::from_vec(bytes, size) {
+            let paint = tiny_skia::PixmapPaint::default();
+            let (left, top) = (left as i32, top as i32);
+            self.pixmap
+                .draw_pixmap(left, top, pixmap.as_ref(), &paint, Transform::identity(), None);
+        }
     }
 
     /// Words whose middle is at a place.
@@ -121,7 +167,7 @@ impl Canvas {
         self.text(words, [corner.x, corner.y], height, colour);
     }
 
-    pub(super) fn into_frame(self) -> Frame {
+    pub(in crate::render) fn into_frame(self) -> Frame {
         Frame {
             width: self.pixmap.width() as usize,
             height: self.pixmap.height() as usize,

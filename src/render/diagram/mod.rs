@@ -9,7 +9,7 @@
 //! 3. The pose space: each place has the mean of the poses' colours by their weights, with lines where another
 //!    pose becomes the heaviest; dots are the poses, the line is the animation's path. Beside it the legend.
 
-mod canvas;
+pub(super) mod canvas;
 mod labels;
 mod layout;
 mod legend;

@@ -24,29 +24,11 @@ impl Reader<'_> {
                 for (index, key) in keys.get_ref().iter().enumerate() {
                     let start = key.span().start;
                     let written = key.get_ref();
-                    if !written.time.is_finite() || written.time.abs() > LATEST_TIME {
-                        return Err(self.fail(
-                            start,
-                            SceneProblem::BadNumber {
-                                key: format!("time of animation key {index}"),
-                                value: written.time,
-                                allowed: "finite and at most a million seconds",
-                            },
-                        ));
-                    }
-                    if let Some(before) = checked.last().map(|k| k.time).filter(|before| *before >= written.time) {
-                        return Err(self.fail(
-                            start,
-                            SceneProblem::KeyOrder {
-                                index,
-                                time: written.time,
-                                before,
-                            },
-                        ));
-                    }
+                    let before = checked.last().map(|k| k.time);
+                    let time = self.key_time(index, written.time, before, start)?;
                     let at = Spanned::new(key.span(), written.at.clone());
                     checked.push(Key {
-                        time: written.time,
+                        time,
                         at: self.place(&at, &format!("`at` of animation key {index}"), Some(dimension))?,
                     });
                 }
@@ -54,13 +36,7 @@ impl Reader<'_> {
             }
             _ => Animation::visiting(poses.iter().map(|p| p.at.as_slice()), table.looped.unwrap_or(true)),
         };
-        animation.fps = self.number(
-            &table.fps,
-            "[animation] fps",
-            Animation::DEFAULT_FPS,
-            |v| v > 0.0 && v <= HIGHEST_RATE,
-            "above 0 and at most 1000",
-        )?;
+        animation.fps = self.frame_rate(&table.fps)?;
         if let Some(size) = &table.size {
             let (start, sides) = (size.span().start, size.get_ref());
             let bad = |value: i64| {
@@ -96,6 +72,41 @@ impl Reader<'_> {
             })?;
         }
         Ok(animation)
+    }
+
+    /// Frames a second.
+    pub(in crate::scene) fn frame_rate(&self, fps: &Option<Spanned<f64>>) -> Checked<f64> {
+        self.number(
+            fps,
+            "[animation] fps",
+            Animation::DEFAULT_FPS,
+            |v| v > 0.0 && v <= HIGHEST_RATE,
+            "above 0 and at most 1000",
+        )
+    }
+
+    /// The time of a key, which comes after the one before.
+    pub(in crate::scene) fn key_time(
+        &self,
+        index: usize,
+        time: f64,
+        before: Option<f64>,
+        start: usize,
+    ) -> Checked<f64> {
+        if !time.is_finite() || time.abs() > LATEST_TIME {
+            return Err(self.fail(
+                start,
+                SceneProblem::BadNumber {
+                    key: format!("time of animation key {index}"),
+                    value: time,
+                    allowed: "finite and at most a million seconds",
+                },
+            ));
+        }
+        match before.filter(|before| *before >= time) {
+            Some(before) => Err(self.fail(start, SceneProblem::KeyOrder { index, time, before })),
+            None => Ok(time),
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The fit of hyperplane and radial functions, and its evaluation.
 
 use super::Radial;
+use crate::math::vectorised;
 use crate::solve::{DenseMatrix, SolvedDense};
 use crate::weights::WeightError;
 use crate::weights::layout::{Layout, distance};
@@ -41,13 +42,14 @@ impl Fitted {
             .map(|k| places.iter().map(|place| place[k]).sum::<f64>() / count as f64)
             .collect();
         let centred = DenseMatrix::from_fn(count, dimension, |row, column| places[row][column] - mean[column]);
+        let distances = distances(places);
         let radii = match radial {
-            Radial::BSpline => layout.nearest_neighbours(),
+            Radial::BSpline => nearest_neighbours(&distances),
             // One common unit: it changes nothing but the rounding.
             Radial::ThinPlate if count > 1 => vec![layout.diagonal(); count],
             Radial::ThinPlate => vec![1.0; count],
         };
-        let kernel = |a: usize, b: usize| radial.at(distance(&places[a], &places[b]) / radii[b]);
+        let kernel = kernel(radial, distances, &radii);
         let (coefficients, slopes, at_mean, condition) = match radial {
             Radial::BSpline => {
                 let data_mean: Vec<f64> = (0..pose_count)
@@ -58,8 +60,7 @@ impl Fitted {
                 });
                 let slopes = centred.least_squares(&about_mean, FLATNESS)?;
                 let left_over = about_mean.plus(-1.0, &centred.times(&slopes)?)?;
-                let system = DenseMatrix::from_fn(count, count, kernel);
-                let (coefficients, condition) = solved(&system, &left_over, count)?;
+                let (coefficients, condition) = solved(&kernel, &left_over, count)?;
                 (coefficients, slopes, data_mean, condition)
             }
             Radial::ThinPlate => {
@@ -71,7 +72,7 @@ impl Fitted {
                 let linear = |row: usize, k: usize| if k == 0 { 1.0 } else { along.at(row, k - 1) / unit };
                 let system = DenseMatrix::from_fn(count + side, count + side, |row, column| {
                     match (row.checked_sub(count), column.checked_sub(count)) {
-                        (None, None) => kernel(row, column),
+                        (None, None) => kernel.at(row, column),
                         (None, Some(k)) => linear(row, k),
                         (Some(k), None) => linear(column, k),
                         (Some(_), Some(_)) => 0.0,
@@ -90,8 +91,9 @@ impl Fitted {
             }
         };
         let rows = |matrix: &DenseMatrix, rows: usize| {
-            let row = |row| (0..pose_count).map(move |column| matrix.at(row, column));
-            (0..rows).flat_map(row).collect()
+            let mut table = Vec::with_capacity(rows * pose_count);
+            (0..rows).for_each(|row| table.extend_from_slice(&matrix.row(row)[..pose_count]));
+            table
         };
         Ok(Self {
             pose_count,
@@ -149,12 +151,74 @@ impl Fitted {
     }
 }
 
+/// Between all examples, #examples x #examples.
+fn distances(places: &[Vec<f64>]) -> DenseMatrix {
+    let count = places.len();
+    let mut table = DenseMatrix::from_fn(
+        count,
+        count,
+        |a, b| if b < a { distance(&places[a], &places[b]) } else { 0.0 },
+    );
+    for a in 0..count {
+        for b in 0..a {
+            table.set(b, a, table.at(a, b));
+        }
+    }
+    table
+}
+
+/// The distance from each example to its nearest neighbour; 1 for one that is alone.
+fn nearest_neighbours(distances: &DenseMatrix) -> Vec<f64> {
+    let count = distances.row_count();
+    if count == 1 {
+        return vec![1.0];
+    }
+    let nearest = |k: usize| {
+        let row = distances.row(k);
+        let others = row[..k].iter().chain(&row[k + 1..]);
+        others.fold(f64::INFINITY, |least, distance| least.min(*distance))
+    };
+    (0..count).map(nearest).collect()
+}
+
+/// The radial function of each example (columns) at all of them (rows); `table` holds the distances.
+fn kernel(radial: Radial, mut table: DenseMatrix, radii: &[f64]) -> DenseMatrix {
+    match radial {
+        Radial::BSpline => vectorised(
+            #[inline(always)]
+            || {
+                for row in 0..table.row_count() {
+                    for (value, radius) in table.row_mut(row).iter_mut().zip(radii) {
+                        *value = radial.at(*value / radius);
+                    }
+                }
+            },
+        ),
+        // All radii are the same, so the table is symmetric; logarithms are dear.
+        Radial::ThinPlate => {
+            for (row, radius) in radii.iter().enumerate() {
+                for column in 0..=row {
+                    let value = radial.at(table.at(row, column) / radius);
+                    table.set(row, column, value);
+                    table.set(column, row, value);
+                }
+            }
+        }
+    }
+    table
+}
+
 /// The solution of a system whose first `examples` unknowns belong to examples, and its condition number.
 fn solved(system: &DenseMatrix, right: &DenseMatrix, examples: usize) -> Result<(DenseMatrix, f64), WeightError> {
     let (size, columns) = (right.row_count(), right.column_count());
     // The inverse, for its norm, beside the solution: where data are those of poses alone, the inverse is the solution. These
     // systems are small.
-    let is_unit = |row: usize| (0..columns).all(|column| right.at(row, column) == f64::from(u8::from(row == column)));
+    let is_unit = |row: usize| {
+        let entries = right.row(row).iter().enumerate();
+        entries
+            .into_iter()
+            .all(|(column, entry)| *entry == f64::from(u8::from(row == column)))
+    };
     let columns = if (0..size).all(is_unit) { 0 } else { columns };
     let both = DenseMatrix::from_fn(size, columns + size, |row, column| match column.checked_sub(columns) {
         None => right.at(row, column),
@@ -172,9 +236,17 @@ fn solved(system: &DenseMatrix, right: &DenseMatrix, examples: usize) -> Result<
     let Ok(both) = SolvedDense::new(system).and_then(|factored| factored.solve(&both)) else {
         return Err(blame(&|_| 1.0, f64::INFINITY));
     };
-    let norm = |matrix: &DenseMatrix, column: usize| (0..size).map(|row| matrix.at(row, column).abs()).sum::<f64>();
     let largest = |matrix: &DenseMatrix, from: usize| {
-        let norms = (from..from + size).map(|column| (column, norm(matrix, column)));
+        let mut norms = vec![0.0; size];
+        for row in 0..size {
+            for (norm, entry) in norms.iter_mut().zip(&matrix.row(row)[from..]) {
+                *norm += entry.abs();
+            }
+        }
+        let norms = norms
+            .into_iter()
+            .enumerate()
+            .map(|(column, norm)| (from + column, norm));
         norms.fold((from, 0.0), |best, next| if next.1 > best.1 { next } else { best })
     };
     let (worst, inverse_norm) = largest(&both, columns);
