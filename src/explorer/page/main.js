@@ -1,3 +1,33 @@
-const scene = await (await fetch("api/scene")).json();
-document.title = `${scene.name} – inbetween`;
-document.getElementById("status").textContent = `${scene.name}: ${scene.poses.length} poses`;
+// The page: its parts come alive by being imported, and hear of everything by events.
+import './theme.js';
+import './toasts.js';
+import './frames.js';
+import './picture.js';
+import './pad.js';
+import './weights.js';
+import './timeline.js';
+import { showTab } from './inspector.js';
+import './matches.js';
+import './export.js';
+import './keyboard.js';
+import './bars.js';
+import { byId, h } from './dom.js';
+import { settled } from './frames.js';
+import { look, on, start, store } from './state.js';
+
+on('tab', (name) => {
+  byId('app').dataset.inspector = 'open';
+  showTab(name);
+});
+
+try {
+  await start();
+  look({});
+  byId('app').setAttribute('aria-busy', 'false');
+  await settled();
+  document.documentElement.dataset.ready = 'true';
+  if (new URLSearchParams(location.search).has('bench') && store.state.revisions.shape > 0) (await import('./bench.js')).measure();
+} catch (error) {
+  byId('stage').replaceChildren(h('p', { class: 'note' }, `The page cannot be opened: ${error.message}`));
+  throw error;
+}

@@ -1,4 +1,5 @@
-//! The page's files, as they are served.
+//! The page's files, as they are served: plain HTML, CSS and JavaScript modules, one idea a file. `main.js` imports the others,
+//! which hear of everything by the events of `state.js`.
 
 /// A file of the page: its name in the address, its type, its bytes.
 type PageFile = (&'static str, &'static str, &'static [u8]);
@@ -8,18 +9,56 @@ const CSS: &str = "text/css; charset=utf-8";
 const JAVASCRIPT: &str = "text/javascript; charset=utf-8";
 const SVG: &str = "image/svg+xml";
 
-/// All of them.
-const FILES: &[PageFile] = &[
+/// JavaScript modules under their own names.
+macro_rules! modules {
+    ($($name:literal),* $(,)?) => {
+        &[$(($name, JAVASCRIPT, include_bytes!($name))),*]
+    };
+}
+
+/// What is not a module.
+const FRAME: &[PageFile] = &[
     ("", HTML, include_bytes!("index.html")),
     ("style.css", CSS, include_bytes!("style.css")),
-    ("main.js", JAVASCRIPT, include_bytes!("main.js")),
+    ("parts.css", CSS, include_bytes!("parts.css")),
     ("icon.svg", SVG, include_bytes!("icon.svg")),
+];
+
+const MODULES: &[PageFile] = modules![
+    "api.js",
+    "bars.js",
+    "bench.js",
+    "controls.js",
+    "dom.js",
+    "export.js",
+    "frames.js",
+    "gl.js",
+    "handles.js",
+    "icons.js",
+    "inspector.js",
+    "keyboard.js",
+    "main.js",
+    "maps.js",
+    "matches.js",
+    "pad.js",
+    "picture.js",
+    "plane.js",
+    "puppet.js",
+    "recorder.js",
+    "shaders.js",
+    "state.js",
+    "theme.js",
+    "thumbnail.js",
+    "timeline.js",
+    "toasts.js",
+    "weights.js",
 ];
 
 /// The file of this name: its type and its bytes.
 pub(super) fn file(name: &str) -> Option<(&'static str, &'static [u8])> {
-    FILES
+    FRAME
         .iter()
+        .chain(MODULES)
         .find(|(own, ..)| *own == name)
         .map(|(_, content_type, bytes)| (*content_type, *bytes))
 }

@@ -1,0 +1,134 @@
+// Requests to the server behind the page. Addresses are relative: the token is part of the page's own address.
+
+/** An answer that says why there is none: `problem` is what the server wrote. */
+export class Refused extends Error {
+  constructor(status, problem) {
+    super(problem?.message ?? `the server answered ${status}`);
+    this.status = status;
+    this.problem = problem;
+  }
+}
+
+async function checked(response) {
+  if (response.ok) return response;
+  let problem = null;
+  try {
+    problem = (await response.json()).error;
+  } catch { /* an answer without a body */ }
+  throw new Refused(response.status, problem);
+}
+
+/** `{at: [1, 2], box: null}` as `?at=1,2`. */
+export function query(fields) {
+  const search = new URLSearchParams();
+  for (const [name, value] of Object.entries(fields)) {
+    if (value === null || value === undefined || value === '') continue;
+    search.append(name, Array.isArray(value) ? value.join(',') : String(value));
+  }
+  const text = search.toString().replaceAll('%2C', ',');
+  return text && `?${text}`;
+}
+
+export async function getJson(route, fields = {}, options = {}) {
+  return (await checked(await fetch(`api/${route}${query(fields)}`, options))).json();
+}
+
+/** The 4-byte numbers of a binary answer. */
+export async function getWords(route, fields = {}, options = {}) {
+  return new Words(await (await checked(await fetch(`api/${route}${query(fields)}`, options))).arrayBuffer());
+}
+
+export async function getText(route) {
+  return (await checked(await fetch(`api/${route}`))).text();
+}
+
+async function post(route, body) {
+  const headers = { 'Content-Type': 'application/json' };
+  return checked(await fetch(`api/${route}`, { method: 'POST', headers, body: JSON.stringify(body) }));
+}
+
+export async function postJson(route, body = {}) {
+  return (await post(route, body)).json();
+}
+
+export async function postWords(route, body = {}) {
+  return new Words(await (await post(route, body)).arrayBuffer());
+}
+
+/** Little-endian u32 and f32 read one after the other. */
+export class Words {
+  constructor(buffer) {
+    this.whole = new Uint32Array(buffer);
+    this.real = new Float32Array(buffer);
+    this.next = 0;
+  }
+
+  get done() {
+    return this.next >= this.whole.length;
+  }
+
+  u32() {
+    return this.whole[this.next++];
+  }
+
+  f32() {
+    return this.real[this.next++];
+  }
+
+  u32s(count) {
+    return this.whole.subarray(this.next, (this.next += count));
+  }
+
+  f32s(count) {
+    return this.real.subarray(this.next, (this.next += count));
+  }
+}
+
+/** The blocks of `api/frame`. */
+export function readFrames(words) {
+  const frames = [];
+  while (!words.done) frames.push(readFrame(words));
+  return frames;
+}
+
+function readFrame(words) {
+  words.u32();
+  const frame = { shape: words.u32(), revision: words.u32() };
+  const poses = words.u32();
+  const layers = words.u32();
+  frame.inverted = words.u32();
+  frame.weights = words.f32s(poses);
+  frame.textureWeights = words.f32s(poses);
+  frame.order = Array.from(words.u32s(layers));
+  frame.layers = Array.from({ length: layers }, () => {
+    const vertices = words.u32();
+    const own = words.u32();
+    const textures = words.u32();
+    const triangles = words.u32();
+    const rings = words.u32();
+    return {
+      opacity: words.f32(),
+      positions: words.f32s(2 * vertices),
+      weights: words.f32s(own),
+      textureWeights: words.f32s(textures),
+      inverted: words.u32s(Math.ceil(triangles / 32)),
+      rings: Array.from({ length: rings }, () => words.f32s(2 * words.u32())),
+    };
+  });
+  return frame;
+}
+
+/** The layers of `api/mesh`. */
+export function readMeshes(words) {
+  const meshes = [];
+  while (!words.done) {
+    const [vertices, triangles, poses, rings] = words.u32s(4);
+    meshes.push({
+      vertices,
+      triangles: words.u32s(3 * triangles),
+      poses: Array.from({ length: poses }, () => words.f32s(2 * vertices)),
+      rings: Array.from({ length: rings }, () => words.u32s(words.u32())),
+    });
+  }
+  return meshes;
+}

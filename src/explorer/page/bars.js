@@ -1,0 +1,97 @@
+// The bar at the top, and the one over the picture.
+import { asked, emit, look, on, store } from './state.js';
+import { byId, h } from './dom.js';
+import { iconButton, segments, toggle } from './controls.js';
+import { icon } from './icons.js';
+import { copyCommand, openExport } from './export.js';
+import { openKeys } from './keyboard.js';
+import { actualSize, fit, frameView, zoomBy } from './picture.js';
+import { flipTheme, isDark } from './theme.js';
+
+const app = byId('app');
+const undo = iconButton('undo', 'Undo', () => asked('undo', {}), { id: 'undo' });
+const redo = iconButton('redo', 'Redo', () => asked('redo', {}), { id: 'redo' });
+const theme = iconButton('moon', 'Dark or light', () => flipTheme());
+const panel = toggle('panel', 'Inspector', () => app.dataset.inspector !== 'closed', (open) => {
+  app.dataset.inspector = open ? 'open' : 'closed';
+  panel.update();
+});
+if (innerWidth < 1100) {
+  app.dataset.inspector = 'closed';
+  panel.update();
+}
+byId('bar-tools').append(undo, redo, h('span', { class: 'rule' }),
+  h('button', { type: 'button', id: 'copy-command', title: 'Copy the command that draws this frame (C)', onclick: copyCommand }, icon('command'), h('span', { class: 'wide' }, 'Copy as command')),
+  h('button', { type: 'button', class: 'bordered', id: 'export', title: 'Render the animation (E)', onclick: openExport }, icon('export'), 'Export…'),
+  h('span', { class: 'rule' }), iconButton('keyboard', 'Keys', openKeys), theme, panel);
+
+const saved = byId('saved');
+const banner = h('div', { class: 'banner hidden', role: 'alert' });
+app.querySelector('.centre').prepend(banner);
+
+function drawState() {
+  const { state } = store;
+  for (const [button, label, name] of [[undo, state.undo, 'Undo'], [redo, state.redo, 'Redo']]) {
+    button.disabled = !label;
+    button.title = label ? `${name}: ${label}` : name;
+    button.setAttribute('aria-label', button.title);
+  }
+  const [kind, text] = store.lost ? ['bad', 'The server does not answer']
+    : state.save_error ? ['bad', 'Not saved']
+      : state.working ? ['busy', 'Mapping…']
+        : state.saved ? ['good', 'Saved'] : ['busy', 'Editing…'];
+  saved.dataset.kind = kind;
+  saved.replaceChildren(h('span', { class: 'dot' }), text);
+  saved.title = state.save_error?.message ?? state.save_error ?? (state.timings?.mapping_ms ? `Last mapping: ${Math.round(state.timings.mapping_ms)} ms` : '');
+  document.documentElement.dataset.seq = state.seq;
+  document.documentElement.dataset.working = state.working;
+  const broken = !(state.revisions.shape > 0);
+  const first = state.problems?.[0];
+  const shown = state.conflict || state.save_error || broken || first;
+  banner.classList.toggle('hidden', !shown);
+  if (!shown) return;
+  if (state.conflict) {
+    banner.replaceChildren(icon('warn'), h('span', { class: 'grow' }, 'The scene file was changed by another program, and there are edits here that are not in it.'),
+      h('button', { type: 'button', class: 'bordered', onclick: () => asked('conflict', { take: 'theirs' }) }, 'Read the file'),
+      h('button', { type: 'button', class: 'bordered', onclick: () => asked('conflict', { take: 'mine' }) }, 'Keep what is here'));
+  } else if (state.save_error) {
+    banner.replaceChildren(icon('warn'), h('span', { class: 'grow' }, `Not saved: ${state.save_error.message ?? state.save_error}`), h('button', { type: 'button', class: 'bordered', onclick: () => asked('save', {}) }, 'Try again'));
+  } else {
+    const where = [first?.landmark && `landmark ${first.landmark}`, first?.pose && `pose ${first.pose}`, first?.line && `line ${first.line}`].filter(Boolean).join(', ');
+    banner.replaceChildren(icon('warn'), h('span', { class: 'grow' }, first?.message ?? 'The scene cannot be mapped.', where ? h('span', { class: 'faint' }, ` ${where}`) : null, broken ? null : h('span', { class: 'faint' }, ' The last good shape is shown.')),
+      h('button', { type: 'button', class: 'bordered', onclick: () => emit('tab', first?.where === 'landmark' ? 'landmarks' : 'problems') }, 'Show'));
+  }
+}
+
+// Over the picture.
+
+const main = segments('View', [['picture', 'Picture'], ['matches', 'Matches']], () => store.view.main, (value) => look({ main: value }));
+const tool = segments('Dragging the picture', [
+  ['reach', icon('reach'), 'Pose: drag the drawing along the plane'], ['bend', icon('bend'), 'Bend: drag handles to a new pose'], ['pan', icon('hand'), 'Move the view'],
+], () => store.view.tool, (value) => look({ tool: value }));
+const onion = segments('Onion skin', [['off', 'None'], ['poses', 'Poses'], ['path', 'Path']], () => store.view.onion, (value) => look({ onion: value }));
+const mesh = toggle('mesh', 'Mesh (M)', () => store.view.mesh, (value) => look({ mesh: value }));
+mesh.id = 'mesh';
+const percent = h('button', { type: 'button', class: 'percent', title: 'Actual size (Shift 0)', id: 'actual-size', onclick: actualSize });
+const ofPicture = [tool, h('span', { class: 'onion' }, icon('onion'), onion)];
+byId('picture-tools').append(main, h('span', { class: 'rule' }), ...ofPicture, mesh, h('span', { class: 'grow' }),
+  h('span', { class: 'tools zoom' }, iconButton('minus', 'Zoom out', () => zoomBy(0.8)), percent, iconButton('plus', 'Zoom in', () => zoomBy(1.25)), iconButton('fit', 'Fit (0)', fit)));
+
+function drawView() {
+  [main, tool, onion, mesh].forEach((control) => control.update());
+  const matches = store.view.main === 'matches';
+  [...ofPicture, byId('picture-tools').querySelector('.zoom')].forEach((element) => element.classList.toggle('hidden', matches));
+}
+
+on('state', drawState);
+on('view', drawView);
+on('toggle-mesh', () => look({ mesh: !store.view.mesh }));
+on('tool', (value) => look({ tool: value }));
+on('zoom scene', () => (percent.textContent = `${Math.round(frameView().scale * 100)} %`));
+on('theme', () => theme.replaceChildren(icon(isDark() ? 'sun' : 'moon')));
+theme.replaceChildren(icon(isDark() ? 'sun' : 'moon'));
+on('scene', () => {
+  byId('scene-name').textContent = store.scene.name;
+  byId('scene-file').textContent = store.scene.file;
+  document.title = `${store.scene.name} – inbetween`;
+});

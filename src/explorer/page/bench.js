@@ -1,0 +1,87 @@
+// `?bench`: what a drag costs here, measured by the page: request, answer, drawing, displayed frames.
+import { getWords, readFrames } from './api.js';
+import { byId, h } from './dom.js';
+import { settled, wantFrame } from './frames.js';
+import { drawNow } from './picture.js';
+import { moveTo, on, store } from './state.js';
+
+const REQUESTS = 300;
+const DRAWINGS = 60;
+const SECONDS = 5;
+
+const sorted = (values) => values.slice().sort((a, b) => a - b);
+const quantile = (values, part) => sorted(values)[Math.min(values.length - 1, Math.floor(part * values.length))];
+const shown = (values) => `${quantile(values, 0.5).toFixed(2)} ms (95 %: ${quantile(values, 0.95).toFixed(2)} ms)`;
+
+/** A place on a curve that passes through the whole box. */
+function along(t) {
+  const { box, dimension, poses } = store.scene;
+  if (!box || dimension !== 2) return poses[Math.floor(t) % poses.length].at;
+  const [[x0, y0], [x1, y1]] = box;
+  return [0.5 * (x0 + x1) + 0.5 * (x1 - x0) * Math.sin(2.3 * t), 0.5 * (y0 + y1) + 0.5 * (y1 - y0) * Math.sin(3.1 * t + 0.5)];
+}
+
+const displayed = () => new Promise((done) => requestAnimationFrame(done));
+
+export async function measure() {
+  const table = h('table', {});
+  const dialog = h('dialog', { class: 'dialog bench', 'aria-label': 'Measurements' }, h('header', {}, h('h2', {}, 'Measurements')), table);
+  document.body.append(dialog);
+  const say = (name, value) => table.append(h('tr', {}, h('th', { scope: 'row' }, name), h('td', {}, value)));
+  const result = {};
+  say('Scene', `${store.scene.name}: ${store.puppet.layers.reduce((sum, layer) => sum + layer.vertices, 0)} vertices, ${store.puppet.layers.reduce((sum, layer) => sum + layer.triangles, 0)} triangles, ${store.scene.poses.length} poses`);
+  say('Canvas', `${byId('picture').width} × ${byId('picture').height} pixels`);
+
+  const requests = [];
+  let bytes = 0;
+  for (let k = 0; k < REQUESTS; k++) {
+    const started = performance.now();
+    const words = await getWords('frame', { at: along(k / 20), silhouette: 1 });
+    readFrames(words);
+    requests.push(performance.now() - started);
+    bytes = words.whole.byteLength;
+  }
+  result.request = { median: quantile(requests, 0.5), high: quantile(requests, 0.95), bytes };
+  say('Request to frame', `${shown(requests)}, ${(bytes / 1024).toFixed(1)} KB`);
+
+  await settled();
+  const drawings = [];
+  for (let k = 0; k < DRAWINGS; k++) {
+    const started = performance.now();
+    drawNow();
+    drawings.push(performance.now() - started);
+    await displayed();
+  }
+  result.drawing = { median: quantile(drawings, 0.5), high: quantile(drawings, 0.95) };
+  say('Drawing a frame', shown(drawings));
+
+  // What a drag does: a new place each displayed frame; how many are drawn, and how late.
+  const moved = new Map();
+  const latencies = [];
+  let drawn = 0;
+  let counting = true;
+  on('drawn', () => {
+    const key = store.frame.place.join(',');
+    if (!counting || !moved.has(key)) return;
+    latencies.push(performance.now() - moved.get(key));
+    moved.delete(key);
+    drawn++;
+  });
+  const begun = performance.now();
+  let displays = 0;
+  while (performance.now() - begun < SECONDS * 1000) {
+    const place = along((performance.now() - begun) / 900);
+    moved.set(place.map((v) => v).join(','), performance.now());
+    moveTo(place);
+    await displayed();
+    displays++;
+  }
+  counting = false;
+  const seconds = (performance.now() - begun) / 1000;
+  result.drag = { drawn: drawn / seconds, displayed: displays / seconds, latency: { median: quantile(latencies, 0.5), high: quantile(latencies, 0.95) } };
+  say('While dragging', `${(drawn / seconds).toFixed(1)} frames a second drawn, ${(displays / seconds).toFixed(1)} displayed`);
+  say('From moving to drawn', shown(latencies));
+  wantFrame();
+  dialog.append(h('output', { class: 'hidden', id: 'bench-result' }, JSON.stringify(result)));
+  dialog.showModal();
+}

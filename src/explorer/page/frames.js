@@ -1,0 +1,75 @@
+// Frames of where the probe is: one request at a time, and the newest place wins.
+import { getJson, getWords, readFrames, Refused, Words } from './api.js';
+import { emit, on, store } from './state.js';
+
+let wanted = false;
+let asking = false;
+const waiting = [];
+/** Milliseconds from request to answer of the latest frames. */
+export const roundTrips = [];
+
+/** What a comparison shows in place of the scene's own settings. */
+const instead = () => store.view.compare ?? {};
+
+async function ask() {
+  if (asking || !wanted || !store.scene?.poses.length) return;
+  asking = true;
+  wanted = false;
+  const place = store.place.slice();
+  const started = performance.now();
+  try {
+    if (!(store.state.revisions.shape > 0)) await askWeights(place);
+    else await askFrame(place, started);
+  } catch (error) {
+    if (!(error instanceof Refused)) await new Promise((wait) => setTimeout(wait, 500));
+  }
+  asking = false;
+  if (wanted) requestAnimationFrame(ask);
+  else waiting.splice(0).forEach((done) => done());
+}
+
+async function askFrame(place, started) {
+  const words = await getWords('frame', { at: place, silhouette: 1, ...instead() });
+  roundTrips.push(performance.now() - started);
+  if (roundTrips.length > 240) roundTrips.shift();
+  const [frame] = readFrames(words);
+  frame.place = place;
+  // A frame of meshes that are not here yet would be drawn with the wrong triangles.
+  if (frame.shape === store.puppet?.shape) {
+    store.frame = frame;
+    emit('frame');
+  } else {
+    wanted = true;
+  }
+}
+
+/** Of a scene without a mesh the weights alone. */
+async function askWeights(place) {
+  const [{ weights, texture_weights: textureWeights }] = await getJson('weights', { at: place });
+  store.frame = { place, weights, textureWeights, shape: 0, revision: store.state.revisions.weights, inverted: 0, order: [], layers: [] };
+  emit('frame');
+}
+
+/** Wants the frame of where the probe is now. */
+export function wantFrame() {
+  wanted = true;
+  ask();
+}
+
+/** Resolves when what is shown is where the probe is. */
+export function settled() {
+  if (!wanted && !asking) return Promise.resolve();
+  return new Promise((done) => waiting.push(done));
+}
+
+on('place weights shape', wantFrame);
+on('view', (changes) => 'compare' in changes && wantFrame());
+
+/** Frames of poses or places, for what lies behind the picture. */
+export async function framesOf(name, values) {
+  if (values.length === 0 || !(store.state?.revisions.shape > 0)) return [];
+  const search = values.map((value) => `${name}=${value.join(',')}`).join('&');
+  const response = await fetch(`api/frame?silhouette=1&${search}`);
+  if (!response.ok) return [];
+  return readFrames(new Words(await response.arrayBuffer())).filter((frame) => frame.shape === store.puppet?.shape);
+}

@@ -1,0 +1,272 @@
+// Dragging the drawing itself: along the plane (inverse posing), or away from it, by handles, as a new pose.
+import { postJson, postWords } from './api.js';
+import { follow, h, s, set } from './dom.js';
+import { framesOf } from './frames.js';
+import { drawingView, showBent, toDrawing, toStage } from './picture.js';
+import { edit, emit, moveTo, on, rounded, store } from './state.js';
+
+let stage = null;
+let overlay = null;
+/** Of the pose that is bent: where they were on its drawing, and where they are. */
+let handles = [];
+let reaching = null;
+let bar = null;
+
+export function attachHandles(on_stage) {
+  stage = on_stage;
+  overlay = s('svg', { class: 'overlay', 'aria-hidden': 'true' });
+  bar = h('div', { class: 'floating upper hidden', role: 'group', 'aria-label': 'Handles' });
+  stage.append(overlay, bar);
+}
+
+function under(event) {
+  const box = stage.getBoundingClientRect();
+  return toDrawing([event.clientX - box.left, event.clientY - box.top]);
+}
+
+/** A press on the picture. */
+export function pictureDrag(event) {
+  if (!store.frame) return;
+  if (store.view.tool === 'bend') return bendPress(event);
+  reach(event);
+}
+
+// Inverse posing.
+
+function reach(event) {
+  const from = under(event);
+  const hit = layerUnder(from);
+  if (hit === null) return;
+  const anchor = onMesh(hit, from);
+  const begun = store.place.slice();
+  let wanted = null;
+  let asking = false;
+  const ask = async () => {
+    if (asking || !wanted) return;
+    asking = true;
+    const to = wanted;
+    wanted = null;
+    try {
+      const answer = await postJson('reach', { layer: hit, at: begun, start: store.place, points: [{ from, to }], provider: store.view.compare?.provider ?? null });
+      if (reaching) moveTo(answer.at.map((v) => rounded(v)));
+    } catch (error) {
+      emit('refused', error.problem ?? { message: error.message });
+      wanted = null;
+    }
+    asking = false;
+    ask();
+  };
+  reaching = { anchor, layer: hit, to: from };
+  follow(event, (next, ended) => {
+    if (ended) {
+      reaching = null;
+      drawHandles();
+      return;
+    }
+    reaching.to = under(next);
+    wanted = reaching.to;
+    ask();
+    drawHandles();
+  });
+}
+
+/** The foremost layer with a triangle under a place of the drawing. */
+function layerUnder(place) {
+  for (const k of store.frame.order.slice().reverse()) if (onMesh(k, place)) return k;
+  return null;
+}
+
+/** The triangle under a place, and where in it. */
+function onMesh(layer, [x, y], points = store.frame.layers[layer].positions) {
+  const { triangles } = store.meshes[layer];
+  for (let t = 0; t < triangles.length; t += 3) {
+    const [a, b, c] = [0, 1, 2].map((k) => triangles[t + k]);
+    const parts = partsIn([a, b, c], points, x, y);
+    if (Math.min(...parts) >= 0) return { corners: [a, b, c], parts };
+  }
+  return null;
+}
+
+const placed = ({ corners, parts }, points) => [0, 1].map((d) => corners.reduce((sum, v, k) => sum + parts[k] * points[2 * v + d], 0));
+
+// A new pose by handles: on the drawing of the pose that is chosen, or the nearest.
+
+function basePose() {
+  if (store.pose !== null) return store.pose;
+  const weights = Array.from(store.frame?.weights ?? [1]);
+  return weights.indexOf(Math.max(...weights));
+}
+
+const layerPose = (pose) => store.puppet.layers[store.layer].poses.indexOf(pose);
+
+let basis = null;
+/** A layer, a ring: how the outline of the pose is carried by the mesh. */
+let edges = [];
+/** Shows the pose that is going to be bent. */
+async function beginBend() {
+  handles = [];
+  basis = basePose();
+  latest = null;
+  edges = [];
+  const own = layerPose(basis);
+  if (own < 0) {
+    basis = null;
+    emit('refused', { message: `the layer ${store.puppet.layers[store.layer].name} is not in this pose` });
+    return;
+  }
+  const [frame] = await framesOf('weights', [store.scene.poses.map((_, k) => Number(k === basis))]);
+  edges = (frame?.layers ?? []).map((layer, k) => layer.rings.map((ring) => carriers(k, layer.positions, ring)));
+  await deform();
+}
+
+/** The points of a ring as parts of the triangles that they lie in, or nearest to. */
+function carriers(layer, points, ring) {
+  const { triangles } = store.meshes[layer];
+  const carried = [];
+  for (let k = 0; k < ring.length; k += 2) {
+    let best = { outside: Infinity };
+    for (let t = 0; t < triangles.length && best.outside > 0; t += 3) {
+      const corners = [triangles[t], triangles[t + 1], triangles[t + 2]];
+      const parts = partsIn(corners, points, ring[k], ring[k + 1]);
+      const outside = Math.max(0, -Math.min(...parts)) * (1 + Math.max(0, -Math.min(...parts)));
+      if (outside < best.outside) best = { outside, corners, parts };
+    }
+    carried.push(best);
+  }
+  return carried;
+}
+
+function partsIn([a, b, c], points, x, y) {
+  const [ax, ay] = [points[2 * a], points[2 * a + 1]];
+  const [ux, uy, vx, vy] = [points[2 * b] - ax, points[2 * b + 1] - ay, points[2 * c] - ax, points[2 * c + 1] - ay];
+  const area = ux * vy - uy * vx;
+  const [p, q] = [((x - ax) * vy - (y - ay) * vx) / area, (ux * (y - ay) - uy * (x - ax)) / area];
+  return [1 - p - q, p, q];
+}
+
+let latest = null;
+const shownBent = () => latest ?? store.meshes[store.layer].poses[layerPose(basis)];
+
+let deforming = false;
+let again = false;
+async function deform() {
+  if (deforming) {
+    again = true;
+    return;
+  }
+  if (handles.length === 0) {
+    latest = null;
+    showBent(bentFrame(shownBent(), 0));
+    return;
+  }
+  deforming = true;
+  const pose = store.scene.poses[basis];
+  try {
+    const words = await postWords('deform', { layer: store.layer, pose: pose.name, handles: handles.map(({ from, to }) => ({ from, to })) });
+    const vertices = words.u32();
+    const inverted = words.u32();
+    const positions = words.f32s(2 * vertices);
+    latest = positions;
+    showBent(bentFrame(positions, inverted));
+  } catch (error) {
+    emit('refused', error.problem ?? { message: error.message });
+  }
+  deforming = false;
+  if (again) {
+    again = false;
+    deform();
+  }
+}
+
+/** A frame of one pose, with one layer's vertices elsewhere. */
+function bentFrame(positions, inverted) {
+  const single = (count, index) => Float32Array.from({ length: count }, (_, k) => Number(k === index));
+  return {
+    order: store.frame.order, inverted, place: store.place, weights: store.frame.weights,
+    layers: store.puppet.layers.map((layer, k) => {
+      const own = layer.poses.indexOf(basis);
+      const points = k === store.layer ? positions : store.meshes[k].poses[Math.max(own, 0)];
+      const rings = (edges[k] ?? []).map((ring) => Float32Array.from(ring.flatMap((carrier) => placed(carrier, points))));
+      return {
+        opacity: own < 0 ? 0 : 1, positions: points, rings, inverted: new Uint32Array(0),
+        textureWeights: single(layer.textures.length, layer.texture_of[Math.max(own, 0)]),
+      };
+    }),
+  };
+}
+
+function bendPress(event) {
+  if (basis === null) return;
+  const at = under(event);
+  const view = drawingView();
+  let handle = handles.find(({ to }) => Math.hypot(...toStage(to, view).map((v, d) => v - toStage(at, view)[d])) < 10);
+  if (!handle) {
+    const own = store.meshes[store.layer].poses[layerPose(basis)];
+    const shown = shownBent();
+    const hit = onMesh(store.layer, at, shown);
+    if (!hit) return;
+    handle = { from: placed(hit, own), to: at };
+    handles.push(handle);
+    deform();
+  }
+  drawHandles();
+  follow(event, (next, ended) => {
+    if (ended && next.type === 'pointercancel') return;
+    handle.to = under(next).map((v) => rounded(v, 2));
+    deform();
+    drawHandles();
+  });
+}
+
+async function keep() {
+  const of = store.scene.poses[basis];
+  const many = store.scene.layers.length > 1 || store.scene.layers[0]?.name !== store.scene.name;
+  const layer = many ? store.scene.layers[store.layer].name : undefined;
+  const op = {
+    op: 'add_deformed_pose', of: of.name, at: store.place.map((v) => rounded(v)),
+    handles: handles.map(({ from, to }) => ({ from: from.map((v) => rounded(v, 2)), to: to.map((v) => rounded(v, 2)), ...(layer ? { layer } : {}) })),
+  };
+  const state = await edit([op], `add a pose bent from '${of.name}'`);
+  if (state) emit('tool', 'reach');
+}
+
+// Drawing them.
+
+export function drawHandles() {
+  if (!overlay) return;
+  const view = drawingView();
+  const made = [];
+  if (reaching) {
+    const [a, b] = [toStage(placed(reaching.anchor, store.frame.layers[reaching.layer].positions), view), toStage(reaching.to, view)];
+    made.push(s('line', { class: 'pull', x1: a[0], y1: a[1], x2: b[0], y2: b[1] }), dot('anchor', a, 4), dot('target', b, 5));
+  }
+  if (store.view.tool === 'bend') handles.forEach(({ to }) => made.push(dot('handle', toStage(to, view), 6)));
+  overlay.replaceChildren(...made);
+  bar.classList.toggle('hidden', store.view.tool !== 'bend');
+  if (store.view.tool === 'bend') drawBar();
+}
+
+const dot = (name, [cx, cy], r) => set(s('circle', { class: name }), { cx, cy, r });
+
+let said = '';
+function drawBar() {
+  const pose = store.scene.poses[basis]?.name ?? '';
+  const now = `${pose} ${handles.length} ${store.place}`;
+  if (said === now) return;
+  said = now;
+  const hint = handles.length < 2 ? 'Click on the drawing to pin it, drag to bend it.' : `Becomes a pose at the probe.`;
+  bar.replaceChildren(
+    h('span', {}, 'Bending ', h('b', {}, pose)), h('span', { class: 'faint' }, hint),
+    h('button', { type: 'button', class: 'bordered', disabled: handles.length === 0, onclick: () => { handles = []; deform(); said = ''; drawHandles(); } }, 'Clear'),
+    h('button', { type: 'button', class: 'main', id: 'keep-bent', disabled: handles.length === 0, onclick: keep }, 'Add pose'));
+}
+
+on('view', (changes) => {
+  if (!('tool' in changes)) return;
+  latest = null;
+  showBent(null);
+  said = '';
+  if (store.view.tool === 'bend' && store.frame) beginBend();
+  drawHandles();
+});
+on('place', () => store.view.tool === 'bend' && drawHandles());

@@ -1,0 +1,238 @@
+// The inspector: the scene's settings, its landmarks, keys and problems, one tab each.
+import { byId, h } from './dom.js';
+import { iconButton, menu, numberField, row, segments, slider } from './controls.js';
+import { icon } from './icons.js';
+import { Drag, choosePose, edit, look, moveTo, on, rounded, store } from './state.js';
+
+const root = byId('inspector');
+const TABS = [['scene', 'Scene'], ['landmarks', 'Landmarks'], ['keys', 'Keys'], ['problems', 'Problems']];
+let current = 'scene';
+
+const tabs = TABS.map(([name, label]) => h('button', {
+  type: 'button', role: 'tab', id: `tab-${name}`, 'aria-controls': `panel-${name}`, 'data-tab': name, onclick: () => showTab(name),
+}, label));
+const list = h('div', { class: 'tabs', role: 'tablist', 'aria-label': 'Inspector' }, tabs);
+list.addEventListener('keydown', (event) => {
+  const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+  if (!by) return;
+  event.preventDefault();
+  event.stopPropagation();
+  const next = tabs[(tabs.findIndex((tab) => tab.dataset.tab === current) + by + tabs.length) % tabs.length];
+  showTab(next.dataset.tab);
+  next.focus();
+});
+const panels = Object.fromEntries(TABS.map(([name]) => [name, h('div', { class: 'panel', role: 'tabpanel', id: `panel-${name}`, 'aria-labelledby': `tab-${name}`, tabindex: '-1' })]));
+root.append(list, ...Object.values(panels));
+
+export function showTab(name) {
+  current = name;
+  for (const tab of tabs) {
+    const chosen = tab.dataset.tab === name;
+    tab.setAttribute('aria-selected', String(chosen));
+    tab.tabIndex = chosen ? 0 : -1;
+    panels[tab.dataset.tab].classList.toggle('hidden', !chosen);
+  }
+}
+showTab('scene');
+
+const section = (title, ...children) => h('section', { class: 'section' }, h('h3', {}, title), children);
+const setting = (table, key, value) => edit([{ op: 'set', table, key, value }], `set ${key.replaceAll('_', ' ')}`);
+
+// The scene's settings. Built once a scene; afterwards only values change.
+
+const updated = [];
+const live = (control) => {
+  updated.push(control);
+  return control;
+};
+
+/** A slider that shows its effect while it moves, and becomes one edit. */
+function dragged(label, range, value, table, key) {
+  let drag = null;
+  const op = (v) => [{ op: 'set', table, key, value: rounded(v) }];
+  return live(slider(label, range, value, (v) => (drag ??= new Drag(`set ${key}`)).to(op(v)), (v) => {
+    if (drag) drag.end(op(v));
+    else edit(op(v), `set ${key}`);
+    drag = null;
+  }));
+}
+
+function buildScene() {
+  const { scene } = store;
+  updated.length = 0;
+  const space = () => store.scene.pose_space ?? {};
+  const radial = live(menu('Radial function', [['b-spline', 'B-spline'], ['thin-plate', 'Thin plate']], () => space().radial, (v) => setting('pose_space', 'radial', v)));
+  const children = [
+    problemsOf('file', 'space'),
+    poseSection(),
+    section('Weights',
+      row('Provider', live(segments('Provider', [['biharmonic', 'Biharmonic'], ['rbf', 'Radial']], () => space().provider, (v) => setting('pose_space', 'provider', v)))),
+      row('Radial', radial)),
+    section('Shape',
+      row('Stretch', live(segments('Stretch', [['linear', 'Linear'], ['limited', 'Limited'], ['log', 'Log']], () => store.scene.blend?.stretch, (v) => setting('blend', 'stretch', v)))),
+      row('Folds', live(segments('Guard against folds', [['off', 'Leave'], ['repair', 'Repair']], () => store.scene.blend?.guard, (v) => setting('blend', 'guard', v))))),
+    section('Texture',
+      dragged('Sharpness', { min: 0, max: 1, step: 0.01 }, () => store.scene.texture?.sharpness ?? 0.5, 'texture', 'sharpness'),
+      row('Colours', live(segments('Blending of colours', [['plain', 'As stored'], ['linear', 'Light']], () => store.scene.texture?.blending, (v) => setting('texture', 'blending', v))))),
+    section('Compare',
+      h('p', { class: 'faint small' }, 'B is shown in place of the scene’s own settings while it is on. Hold B to flip.'),
+      compareSection()),
+    scene.dimension === 2 ? pseudoSection() : null,
+  ];
+  panels.scene.replaceChildren(...children.filter(Boolean));
+}
+
+// The pose that is looked at.
+
+function poseSection() {
+  const pose = store.scene.poses[store.pose];
+  if (!pose) return null;
+  const place = pose.at.map((_, d) => live(numberField(`${pose.name}, ${'xyz'[d] ?? d}`, () => store.scene.poses[store.pose]?.at[d] ?? 0,
+    (value) => edit([{ op: 'move_pose', pose: pose.name, at: store.scene.poses[store.pose].at.map((v, k) => (k === d ? value : v)) }], `move pose '${pose.name}'`))));
+  const own = section(`Pose ${pose.name}`,
+    row('Place', ...place),
+    row('Mirrored', h('input', { type: 'checkbox', 'aria-label': 'Mirrored', checked: pose.mirror, disabled: pose.kind !== 'drawn', onchange: (event) => edit([{ op: 'set_pose', pose: pose.name, key: 'mirror', value: event.target.checked }], `mirror pose '${pose.name}'`) })),
+    pose.deform_of ? row('Bent from', h('span', {}, pose.deform_of)) : row('Drawing', h('span', { class: 'clip', title: pose.source ?? '' }, pose.source ?? '–')),
+    problemsOf('pose', null, pose.name),
+    h('div', { class: 'buttons' },
+      h('button', { type: 'button', class: 'bordered', onclick: () => moveTo(pose.at.slice()) }, 'Go there'),
+      h('button', { type: 'button', class: 'bordered', onclick: () => edit([{ op: 'remove_pose', pose: pose.name }], `remove pose '${pose.name}'`).then((done) => done && choosePose(null)) }, 'Remove'),
+      h('button', { type: 'button', onclick: () => choosePose(null) }, 'Done')));
+  own.classList.add('of-pose');
+  return own;
+}
+
+// A and B.
+
+let other = { provider: 'rbf' };
+let compared = 'provider';
+
+export function compare(shown) {
+  look({ compare: shown ? { ...other } : null });
+}
+
+function compareSection() {
+  const what = menu('What B changes', [['provider', 'Provider'], ['stretch', 'Stretch'], ['sharpness', 'Sharpness']], () => compared, (value) => {
+    compared = value;
+    const own = store.scene;
+    other = {
+      provider: { provider: own.pose_space.provider === 'rbf' ? 'biharmonic' : 'rbf' },
+      stretch: { stretch: own.blend.stretch === 'log' ? 'linear' : 'log' },
+      sharpness: { sharpness: own.texture.sharpness > 0.5 ? 0 : 1 },
+    }[value];
+    if (store.view.compare) compare(true);
+    draw();
+  });
+  const values = {
+    provider: () => segments('Provider of B', [['biharmonic', 'Biharmonic'], ['rbf', 'Radial']], () => other.provider, (v) => change({ provider: v })),
+    stretch: () => segments('Stretch of B', [['linear', 'Linear'], ['limited', 'Limited'], ['log', 'Log']], () => other.stretch, (v) => change({ stretch: v })),
+    sharpness: () => slider('B', { min: 0, max: 1, step: 0.01 }, () => other.sharpness, (v) => change({ sharpness: v }), (v) => change({ sharpness: v })),
+  };
+  const place = h('div', {});
+  const change = (value) => {
+    other = value;
+    place.firstChild.update();
+    if (store.view.compare) compare(true);
+  };
+  const draw = () => place.replaceChildren(values[compared]());
+  draw();
+  const ab = live(segments('Shown', [['a', 'A: scene'], ['b', 'B']], () => (store.view.compare ? 'b' : 'a'), (value) => compare(value === 'b')));
+  ab.id = 'compare';
+  return [row('Change', what), h('div', { class: 'indent' }, place), row('Show', ab)];
+}
+
+// Pseudo-poses.
+
+function pseudoSection() {
+  const { scene } = store;
+  const shown = scene.pseudo_poses.map((pseudo, index) => h('div', { class: 'item' },
+    h('span', { class: 'grow clip' }, `${pseudo.from.map((v) => rounded(v, 2)).join(', ')} → ${pseudo.at.map((v) => rounded(v, 2)).join(', ')}`),
+    iconButton('trash', `Remove pseudo-pose ${index + 1}`, () => edit([{ op: 'remove_pseudo_pose', index }], 'remove a pseudo-pose'))));
+  return section('Pseudo-poses',
+    h('p', { class: 'faint small' }, 'A place that shows the weights of another one. Drag its ends in the plane.'),
+    ...shown,
+    h('div', { class: 'buttons' }, h('button', {
+      type: 'button', class: 'bordered', id: 'add-pseudo',
+      onclick: () => edit([{ op: 'add_pseudo_pose', from: store.place.map((v) => rounded(v)), at: store.place.map((v) => rounded(v)) }], 'add a pseudo-pose'),
+    }, icon('plus'), 'At the probe')));
+}
+
+// Keys.
+
+function buildKeys() {
+  const { animation } = store.scene;
+  if (!animation) return panels.keys.replaceChildren(h('p', { class: 'empty' }, 'There is no animation.'));
+  const keys = animation.keys.map((key) => ({ time: key.time, at: key.at.slice() }));
+  const changed = (label) => edit([{ op: 'set_keys', keys: keys.slice().sort((a, b) => a.time - b.time) }], label);
+  const rows = keys.map((key, index) => h('tr', {},
+    h('td', {}, numberField(`Time of key ${index + 1}`, () => key.time, (value) => { key.time = value; changed('move a key'); }, { digits: 3, step: 0.05 })),
+    ...key.at.map((_, d) => h('td', {}, numberField(`${'xyz'[d] ?? d} of key ${index + 1}`, () => key.at[d], (value) => { key.at[d] = value; changed('move a key'); }))),
+    h('td', {}, iconButton('reach', `Go to key ${index + 1}`, () => moveTo(key.at.slice()))),
+    h('td', {}, iconButton('trash', `Remove key ${index + 1}`, () => { keys.splice(index, 1); changed('remove a key'); }))));
+  const names = keys[0]?.at.map((_, d) => h('th', { scope: 'col' }, 'xyz'[d] ?? `p${d + 1}`)) ?? [];
+  const headings = h('tr', {}, h('th', { scope: 'col' }, 'Time'), names, h('th', {}, h('span', { class: 'unseen' }, 'Go')), h('th', {}, h('span', { class: 'unseen' }, 'Remove')));
+  panels.keys.replaceChildren(
+    h('div', { class: 'section' },
+      problemsOf('animation'),
+      animation.own_keys ? null : h('p', { class: 'faint small' }, 'The scene has no keys of its own: the path visits every pose. Changing one makes them the scene’s own.'),
+      h('table', { class: 'keys' }, h('thead', {}, headings), h('tbody', {}, rows)),
+      h('div', { class: 'buttons' }, h('button', {
+        type: 'button', class: 'bordered',
+        onclick: () => { keys.push({ time: rounded((keys.at(-1)?.time ?? -1) + 1, 3), at: store.place.map((v) => rounded(v)) }); changed('add a key'); },
+      }, icon('plus'), 'Key at the probe'))),
+    section('Playing',
+      row('Frame rate', numberField('Frames a second', () => animation.fps, (v) => setting('animation', 'fps', v), { step: 1 })),
+      row('Frame size', ...[0, 1].map((d) => numberField(['Width', 'Height'][d], () => animation.size[d], (v) => setting('animation', 'size', animation.size.map((own, k) => (k === d ? Math.round(v) : own))), { step: 10 })))));
+}
+
+// Problems.
+
+/** The problems that belong somewhere, as they are shown there. */
+export function problemsOf(...[where, also = null, name = null]) {
+  const own = (store.state?.problems ?? store.scene?.problems ?? []).filter((problem) => (problem.where === where || (also && problem.where === also)) && (!name || problem[where] === name));
+  return own.length > 0 ? h('div', { class: 'problems' }, own.map(problemItem)) : null;
+}
+
+function problemItem(problem) {
+  const where = [problem.landmark && `landmark ${problem.landmark}`, problem.pose && `pose ${problem.pose}`, problem.layer && `layer ${problem.layer}`, problem.line && `line ${problem.line}`].filter(Boolean).join(', ');
+  return h('div', { class: 'problem' }, icon('warn'), h('div', {}, h('p', {}, problem.message), where && h('p', { class: 'faint small' }, where)));
+}
+
+function buildProblems() {
+  const problems = store.state?.problems ?? [];
+  const notes = store.scene?.notes ?? [];
+  const tab = byId('tab-problems');
+  tab.replaceChildren('Problems', ...(problems.length > 0 ? [h('span', { class: 'count' }, String(problems.length))] : []));
+  panels.problems.replaceChildren(
+    ...(problems.length > 0 ? [h('section', { class: 'section' }, problems.map(problemItem))] : [h('p', { class: 'empty' }, 'The scene has no problems.')]),
+    ...(notes.length > 0 ? [section('Notes', notes.map((note) => h('p', { class: 'small' }, note)))] : []));
+}
+
+// Landmarks: filled by matches.js.
+export const landmarksPanel = panels.landmarks;
+
+const busy = () => panels.scene.contains(document.activeElement) && document.activeElement.matches('input[type="range"], select');
+let shape = '';
+on('scene pose', () => {
+  // While a control is held it must not be made anew.
+  const now = JSON.stringify([store.pose, store.scene.poses.map((pose) => [pose.name, pose.mirror]), store.scene.pseudo_poses, store.scene.dimension]);
+  if (now !== shape || !busy()) {
+    shape = now;
+    const focused = document.activeElement?.getAttribute('aria-label');
+    const inside = panels.scene.contains(document.activeElement);
+    const scrolled = panels.scene.scrollTop;
+    buildScene();
+    panels.scene.scrollTop = scrolled;
+    if (inside && focused) panels.scene.querySelector(`[aria-label="${CSS.escape(focused)}"]`)?.focus();
+  } else {
+    updated.forEach((control) => control.update());
+  }
+});
+on('scene', () => {
+  if (!panels.keys.contains(document.activeElement) || document.activeElement.tagName === 'BUTTON') return buildKeys();
+  const label = document.activeElement.getAttribute('aria-label');
+  buildKeys();
+  panels.keys.querySelector(`[aria-label="${CSS.escape(label ?? '')}"]`)?.focus();
+});
+on('state scene', buildProblems);
+on('view', () => updated.forEach((control) => control.update()));

@@ -1,0 +1,89 @@
+// Keys that work wherever the focus is, but in fields; and the list of them.
+import { h } from './dom.js';
+import { iconButton } from './controls.js';
+import { copyCommand, openExport } from './export.js';
+import { arm, isArmed } from './recorder.js';
+import { addFresh, escapeMatches } from './matches.js';
+import { compare } from './inspector.js';
+import { goTo, nudge } from './pad.js';
+import { actualSize, fit, zoomBy } from './picture.js';
+import { asked, look, store } from './state.js';
+import { escapeGesture, play, stepFrame } from './timeline.js';
+
+const cycle = (values, value) => values[(values.indexOf(value) + 1) % values.length];
+
+/** [keys as they are shown, what they do, match, action] */
+const KEYS = [
+  [['←', '↑', '↓', '→'], 'Move the probe; with Shift, finely', null],
+  [['1', '…', '9'], 'Go to a pose', null],
+  [['Home'], 'Go to the first pose', (e) => e.key === 'Home', () => goTo(store.scene.poses[0])],
+  [['Space'], 'Play or pause', (e) => e.key === ' ', () => play()],
+  [[',', '.'], 'One frame back or on', (e) => e.key === ',' || e.key === '.', (e) => stepFrame(e.key === ',' ? -1 : 1)],
+  [['R'], 'Record a gesture', (e) => e.key === 'r', () => arm(!isArmed())],
+  [['M'], 'Mesh', (e) => e.key === 'm', () => look({ mesh: !store.view.mesh })],
+  [['O'], 'Onion skin: off, poses, path', (e) => e.key === 'o', () => look({ onion: cycle(['off', 'poses', 'path'], store.view.onion) })],
+  [['W'], 'The plane shows: nothing, weight, validity', (e) => e.key === 'w', () => look({ map: cycle(['plain', 'weight', 'validity'], store.view.map) })],
+  [['S'], 'Snap', (e) => e.key === 's', () => look({ snap: !store.view.snap })],
+  [['B'], 'Compare: hold for B', null],
+  [['Tab', 'V'], 'Picture or matches', (e) => e.key === 'v', () => look({ main: store.view.main === 'picture' ? 'matches' : 'picture' })],
+  [['0'], 'Fit; with Shift, actual size', (e) => e.code === 'Digit0', (e) => (e.shiftKey ? actualSize() : fit())],
+  [['+', '−'], 'Zoom', (e) => ['+', '=', '-'].includes(e.key), (e) => zoomBy(e.key === '-' ? 0.8 : 1.25)],
+  [['C'], 'Copy as command', (e) => e.key === 'c', () => copyCommand()],
+  [['E'], 'Export', (e) => e.key === 'e', () => openExport()],
+  [['Enter'], 'Add the new landmark', null],
+  [['Ctrl', 'Z'], 'Undo; with Shift, redo', null],
+  [['?'], 'This list', (e) => e.key === '?', () => openKeys()],
+];
+KEYS.find(([keys]) => keys[0] === 'Tab')[0].shift();
+
+const dialog = h('dialog', { class: 'dialog keys-dialog', 'aria-label': 'Keys' },
+  h('header', {}, h('h2', {}, 'Keys'), h('span', { class: 'grow' }), iconButton('close', 'Close', () => dialog.close())),
+  h('dl', {}, KEYS.flatMap(([keys, text]) => [h('dt', {}, keys.map((key) => h('kbd', {}, key))), h('dd', {}, text)])));
+document.body.append(dialog);
+dialog.addEventListener('click', (event) => event.target === dialog && dialog.close());
+
+export const openKeys = () => dialog.showModal();
+
+const inField = (target) => target.closest?.('input:not([type="range"], [type="checkbox"]), select, textarea, dialog');
+
+window.addEventListener('keydown', (event) => {
+  const modified = event.ctrlKey || event.metaKey;
+  if (modified && !event.altKey && ['z', 'y', 'Z'].includes(event.key) && !document.querySelector('dialog[open]') && event.target.type !== 'text') {
+    event.preventDefault();
+    const redo = event.key === 'y' || event.shiftKey;
+    if (redo ? store.state?.redo : store.state?.undo) asked(redo ? 'redo' : 'undo', {});
+    return;
+  }
+  if (modified || event.altKey || inField(event.target) || !store.scene?.poses.length) return;
+  if (event.key === 'Escape') {
+    if (escapeMatches() || escapeGesture()) event.preventDefault();
+    return;
+  }
+  if (event.key === ' ' && event.target.closest('button:not(.probe), [role="tab"]')) return;
+  if (event.key === 'Enter' && !event.target.closest('button')) {
+    addFresh();
+    return;
+  }
+  if (event.key.toLowerCase() === 'b' && !event.repeat) {
+    compare(!store.view.compare);
+    return;
+  }
+  const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+  if (way) {
+    event.preventDefault();
+    nudge(way, event.shiftKey);
+    return;
+  }
+  const digit = /^Digit([1-9])$/.exec(event.code);
+  if (digit && !event.shiftKey && store.scene.poses[digit[1] - 1]) {
+    goTo(store.scene.poses[digit[1] - 1]);
+    return;
+  }
+  const bound = KEYS.find(([, , match]) => match?.({ key: event.key.length === 1 ? event.key.toLowerCase() : event.key, code: event.code }));
+  if (!bound) return;
+  event.preventDefault();
+  bound[3](event);
+});
+window.addEventListener('keyup', (event) => {
+  if (event.key.toLowerCase() === 'b' && !inField(event.target) && store.view.compare) compare(false);
+});

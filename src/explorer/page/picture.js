@@ -1,0 +1,258 @@
+// The picture: the frame where the probe is, with what can be laid under and over it.
+import { byId, clamp, h, onceAFrame, short } from './dom.js';
+import { emit, on, store } from './state.js';
+import { framesOf } from './frames.js';
+import { extent, PuppetPainter } from './puppet.js';
+import { attachHandles, drawHandles, pictureDrag } from './handles.js';
+
+const stage = byId('stage');
+const paper = h('div', { class: 'paper', 'aria-hidden': 'true' });
+const canvas = h('canvas', { class: 'picture', id: 'picture', role: 'img', 'aria-label': 'The drawing at the probe' });
+const note = h('p', { class: 'note' });
+const badge = h('button', { type: 'button', class: 'badge hidden', title: 'Show the mesh' });
+stage.append(paper, canvas, note, badge);
+attachHandles(stage);
+
+const painter = new PuppetPainter(canvas);
+if (!painter.gl) note.textContent = 'This browser has no WebGL2 with float targets: the drawing cannot be shown.';
+
+/** Free room around the frame when it is fitted, in CSS pixels. */
+const ROOM = 20;
+/** `null`: fitted. Otherwise CSS pixels a frame pixel and the frame's corner. */
+let zoomed = null;
+let under = [];
+let loaded = null;
+
+/** Of the frame: fallbacks for scenes without animation. */
+const frameSize = () => store.scene?.animation?.size ?? [512, 512];
+
+/** CSS pixels a frame pixel, and where the frame's corner is. */
+export function frameView() {
+  if (zoomed) return zoomed;
+  const [width, height] = frameSize();
+  const [w, h_] = [stage.clientWidth, stage.clientHeight];
+  const scale = Math.max(0.02, Math.min((w - 2 * ROOM) / width, (h_ - 2 * ROOM) / height));
+  return { scale, x: Math.round((w - width * scale) / 2), y: Math.round((h_ - height * scale) / 2) };
+}
+
+/** CSS pixels a drawing unit, and where the origin of drawings is. */
+export function drawingView() {
+  const { scale, x, y } = frameView();
+  const camera = store.scene?.camera ?? { scale: 1, shift: [0, 0] };
+  return { scale: scale * camera.scale, x: x + camera.shift[0] * scale, y: y + camera.shift[1] * scale };
+}
+
+export const toDrawing = ([x, y], view = drawingView()) => [(x - view.x) / view.scale, (y - view.y) / view.scale];
+export const toStage = ([x, y], view = drawingView()) => [x * view.scale + view.x, y * view.scale + view.y];
+
+export function fit() {
+  zoomed = null;
+  emit('zoom');
+}
+
+/** Zooms by a factor around a place of the stage; its middle if there is none. */
+export function zoomBy(factor, [px, py] = [stage.clientWidth / 2, stage.clientHeight / 2]) {
+  const { scale, x, y } = frameView();
+  const next = clamp(scale * factor, 0.05, 16);
+  zoomed = { scale: next, x: px - ((px - x) * next) / scale, y: py - ((py - y) * next) / scale };
+  emit('zoom');
+}
+
+/** One frame pixel a CSS pixel. */
+export function actualSize() {
+  const [width, height] = frameSize();
+  zoomed = { scale: 1, x: Math.round((stage.clientWidth - width) / 2), y: Math.round((stage.clientHeight - height) / 2) };
+  emit('zoom');
+}
+
+export function panBy(dx, dy) {
+  const { scale, x, y } = frameView();
+  zoomed = { scale, x: x + dx, y: y + dy };
+  emit('zoom');
+}
+
+/** A colour of the style as premultiplied red, green, blue, alpha. */
+function styled(name, alpha) {
+  const text = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  return [...[1, 3, 5].map((k) => (parseInt(text.slice(k, k + 2), 16) / 255) * alpha), alpha];
+}
+
+function draw() {
+  if (store.view.main !== 'picture') {
+    if (store.frame) tellWhat();
+    return;
+  }
+  const ratio = devicePixelRatio;
+  const [width, height] = [Math.round(stage.clientWidth * ratio), Math.round(stage.clientHeight * ratio)];
+  if (width === 0 || height === 0) return;
+  if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+  const corner = frameView();
+  const [w, h_] = frameSize();
+  paper.style.transform = `translate(${corner.x}px, ${corner.y}px)`;
+  paper.style.width = `${w * corner.scale}px`;
+  paper.style.height = `${h_ * corner.scale}px`;
+  const background = store.scene?.animation?.background;
+  paper.style.background = background && background !== 'transparent' ? background : '';
+  paper.classList.toggle('hidden', !store.frame?.layers.length);
+  if (painter.gl) note.textContent = store.scene && !(store.state.revisions.shape > 0) ? 'There is no drawing yet: the scene cannot be mapped. Matches shows what can be read.' : '';
+  if (!painter.gl || !loaded || !store.frame?.layers.length) {
+    if (store.frame) tellWhat();
+    return;
+  }
+  const view = drawingView();
+  painter.begin({ scale: view.scale * ratio, x: view.x * ratio, y: view.y * ratio });
+  const inLight = store.scene.texture?.blending === 'linear';
+  const accent = styled('--accent', 1);
+  under.forEach((frame) => painter.frame(frame, { opacity: 0.2, tint: [...accent.slice(0, 3), 0.45], inLight }));
+  const shown = handled() ?? store.frame;
+  if (shown.layers.length === painter.layers.length) {
+    painter.frame(shown, { inLight });
+    if (store.view.mesh) painter.wires(shown, { line: [0.2 * 0.8, 0.33 * 0.8, 0.85 * 0.8, 0.8], wrong: [0.82, 0.18, 0.15, 1], thickness: 0.35 * ratio });
+  }
+  drawHandles();
+  const inverted = shown.inverted;
+  badge.classList.toggle('hidden', !(inverted > 0));
+  badge.textContent = `${inverted} inverted ${inverted === 1 ? 'triangle' : 'triangles'}`;
+  canvas.setAttribute('aria-label', `The drawing at ${store.place.map((v) => short(v)).join(', ')}${inverted > 0 ? `, ${inverted} triangles inverted` : ''}`);
+  tellWhat();
+  emit('drawn');
+}
+
+/** What is shown, for whoever waits for it from outside. */
+function tellWhat() {
+  canvas.dataset.at = store.frame.place.join(',');
+  canvas.dataset.shape = store.frame.shape;
+  canvas.dataset.weights = store.frame.revision;
+}
+
+/** A frame with a layer's mesh that is being bent by handles, if there is one. */
+let bent = null;
+export function showBent(frame) {
+  bent = frame;
+  redraw();
+}
+const handled = () => (store.view.tool === 'bend' ? bent : null);
+
+export const redraw = onceAFrame(draw);
+/** The same without waiting for the next displayed frame, and until it is done. */
+export function drawNow() {
+  draw();
+  painter.gl?.readPixels(0, 0, 1, 1, painter.gl.RGBA, painter.gl.UNSIGNED_BYTE, new Uint8Array(4));
+}
+
+// The poses as they are drawn, for the pad.
+
+/** Milliseconds without another shape after which thumbnails are drawn. */
+const THUMBNAILS_AFTER = 60;
+/** Pixels of a thumbnail while it is drawn. */
+const THUMBNAIL = 192;
+let resting = 0;
+
+async function drawThumbnails() {
+  const count = store.scene.poses.length;
+  const frames = await framesOf('weights', store.scene.poses.map((_, k) => Array.from({ length: count }, (_, i) => Number(i === k))));
+  // Drawn into the picture's own canvas and copied before anybody sees it.
+  const side = Math.min(THUMBNAIL, canvas.width, canvas.height);
+  frames.forEach((frame, pose) => {
+    const shown = frame.layers.filter((layer) => layer.opacity > 0).flatMap((layer) => layer.rings);
+    if (shown.length === 0 || frame.layers.length !== painter.layers.length || side < 16) return;
+    const boxes = shown.map(extent);
+    const low = [0, 1].map((d) => Math.min(...boxes.map(([from]) => from[d])));
+    const high = [0, 1].map((d) => Math.max(...boxes.map(([, to]) => to[d])));
+    const scale = (side - 4) / Math.max(high[0] - low[0], high[1] - low[1]);
+    painter.begin({ scale, x: 2 - low[0] * scale, y: 2 - low[1] * scale });
+    painter.frame(frame, { inLight: store.scene.texture?.blending === 'linear' });
+    emit('thumbnail', { pose, canvas, box: [0, 0, Math.ceil((high[0] - low[0]) * scale) + 4, Math.ceil((high[1] - low[1]) * scale) + 4] });
+  });
+  draw();
+}
+
+let loading = 0;
+async function load() {
+  const mine = ++loading;
+  const { puppet, meshes } = store;
+  try {
+    const bitmaps = await Promise.all(puppet.layers.map((layer, l) => Promise.all(layer.textures.map(async (_, k) => {
+      const answer = await fetch(`api/texture?layer=${l}&index=${k}&kind=colour&v=${puppet.pictures}`);
+      return createImageBitmap(await answer.blob(), { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
+    }))));
+    if (mine !== loading) return;
+    painter.load(puppet, meshes, bitmaps);
+    loaded = puppet;
+    document.documentElement.dataset.shape = puppet.shape;
+    redraw();
+    drawUnder();
+    clearTimeout(resting);
+    resting = setTimeout(drawThumbnails, THUMBNAILS_AFTER);
+  } catch (error) {
+    console.error(error);
+  }
+}
+
+canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
+canvas.addEventListener('webglcontextrestored', () => {
+  painter.build();
+  painter.layers = [];
+  load();
+});
+
+// What lies behind.
+
+async function drawUnder() {
+  const { onion } = store.view;
+  if (onion === 'off' || !store.scene) {
+    under = [];
+  } else if (onion === 'poses') {
+    const count = store.scene.poses.length;
+    under = await framesOf('weights', store.scene.poses.map((_, k) => Array.from({ length: count }, (_, i) => Number(i === k))));
+  } else {
+    const path = store.path ?? [];
+    const wanted = 7;
+    under = await framesOf('at', Array.from({ length: Math.min(wanted, path.length) }, (_, k) => path[Math.round((k / wanted) * (path.length - 1))]));
+  }
+  redraw();
+}
+
+// The pointer.
+
+canvas.addEventListener('wheel', (event) => {
+  event.preventDefault();
+  const box = stage.getBoundingClientRect();
+  if (event.ctrlKey || event.metaKey || !event.shiftKey) zoomBy(Math.exp(-event.deltaY * (event.ctrlKey ? 0.01 : 0.0016)), [event.clientX - box.left, event.clientY - box.top]);
+  else panBy(-event.deltaX, -event.deltaY);
+}, { passive: false });
+canvas.addEventListener('pointerdown', (event) => {
+  if (event.button === 1 || store.view.tool === 'pan') {
+    event.preventDefault();
+    let last = [event.clientX, event.clientY];
+    canvas.setPointerCapture(event.pointerId);
+    canvas.classList.add('panning');
+    const move = (next) => {
+      panBy(next.clientX - last[0], next.clientY - last[1]);
+      last = [next.clientX, next.clientY];
+    };
+    const end = () => {
+      canvas.classList.remove('panning');
+      canvas.removeEventListener('pointermove', move);
+    };
+    canvas.addEventListener('pointermove', move);
+    canvas.addEventListener('pointerup', end, { once: true });
+    canvas.addEventListener('pointercancel', end, { once: true });
+  } else if (event.button === 0) {
+    pictureDrag(event);
+  }
+});
+badge.addEventListener('click', () => emit('toggle-mesh'));
+
+on('shape', load);
+on('frame scene zoom theme', redraw);
+on('view', (changes) => {
+  stage.dataset.tool = store.view.tool;
+  redraw();
+  if ('onion' in changes) drawUnder();
+});
+on('weights path', () => store.view.onion !== 'off' && drawUnder());
+new ResizeObserver(() => {
+  emit('zoom');
+  draw();
+}).observe(stage);
