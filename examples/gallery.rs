@@ -48,7 +48,7 @@ fn main() -> Drawn {
     explained(&folder)?;
     curves(&folder)?;
     shape_sheet("bendable", [760, 1262], &folder)?;
-    shape_sheet("arm", [1200, 960], &folder)
+    shape_sheet("arm", [1400, 1110], &folder)
 }
 
 fn data(name: &str) -> PathBuf {
