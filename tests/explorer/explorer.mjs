@@ -23,6 +23,8 @@ const scene = join(folder, name, basename(original));
 const run = (...rest) => execFileSync(command, rest, { cwd: folder, stdio: ['ignore', 'pipe', 'ignore'] });
 
 let failed = false;
+// What the page reports.
+const errors = [];
 const check = (holds, what) => {
   console.log(`${holds ? 'ok  ' : 'FAIL'} explorer ${name}: ${what}`);
   failed ||= !holds;
@@ -45,6 +47,7 @@ try {
   await proofs();
 } catch (error) {
   console.log(`FAIL explorer ${name}: ${error.stack}`);
+  errors.forEach((text) => console.log(`     the page says: ${text}`));
   failed = true;
 } finally {
   await browser.close();
@@ -56,7 +59,6 @@ async function proofs() {
   await strangers();
   const context = await browser.newContext({ viewport: { width: 1440, height: 1000 }, deviceScaleFactor: 1, colorScheme: 'light' });
   const page = await context.newPage();
-  const errors = [];
   const outside = [];
   page.on('pageerror', (error) => errors.push(error.message));
   page.on('console', (message) => message.type() === 'error' && errors.push(message.text()));
