@@ -102,6 +102,7 @@ export class PuppetPainter {
 
   /** Draws a frame on what is there. */
   frame(frame, { opacity = 1, tint = [0, 0, 0, 0], inLight = false } = {}) {
+    const { gl } = this;
     for (const k of frame.order) {
       const shape = frame.layers[k];
       const layer = this.layers[k];
