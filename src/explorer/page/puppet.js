@@ -9,6 +9,8 @@ import { MESH, textured } from './shaders.js';
 const FAINTEST = 1e-3;
 /** Textures that are drawn at once; of more, the heaviest. WebGL2 has 16 for sure, and two hold places and areas. */
 const MOST_TEXTURES = 13;
+/** Texels that a pixel may span before a smaller picture is used, as in `render::texture`. */
+const MOST_TEXELS_A_PIXEL = 2.28;
 /** How far colours reach beyond the mesh, of the drawing's size: the outline is finer than the mesh's boundary. */
 const SKIRT = 0.04;
 
@@ -42,6 +44,7 @@ export class PuppetPainter {
       return {
         picture: pictureTexture(gl, bitmaps[k]),
         row: k * drawn.rows,
+        area: areaOf(mesh.triangles, mesh.poses[of.pose]) * scale * scale,
         texels: [scale / width, scale / height, (-origin[0] * scale) / width, (-origin[1] * scale) / height],
       };
     });
@@ -55,6 +58,7 @@ export class PuppetPainter {
     return {
       textures,
       drawn,
+      triangles: mesh.triangles,
       places: new PointTexture(gl, mesh.vertices),
       count: mesh.triangles.length,
       inside: this.corners(corners),
@@ -166,6 +170,10 @@ export class PuppetPainter {
     gl.uniform1iv(at['rows[0]'], shown.map(({ row }) => row));
     gl.uniform4fv(at['texels[0]'], shown.flatMap(({ texels }) => texels));
     gl.uniform1fv(at['weights[0]'], shown.map(({ weight }) => weight / whole));
+    // One level for all of a texture, as the command does it.
+    const seen = Math.max(areaOf(layer.triangles, shape.positions) * this.view[0] ** 2, 1e-6);
+    const level = (area) => Math.max(0, Math.ceil(Math.log2(Math.sqrt(area / seen) / MOST_TEXELS_A_PIXEL)));
+    gl.uniform1fv(at['levels[0]'], shown.map(({ area }) => level(area)));
     shown.forEach(({ picture }, k) => {
       bound(gl, 3 + k, picture);
       gl.uniform1i(at[`picture${k}`], 3 + k);
@@ -240,6 +248,16 @@ function skirt(mesh) {
     }
   });
   return new Uint32Array(corners);
+}
+
+/** The area of the triangles that are not inverted. */
+function areaOf(triangles, points) {
+  let doubled = 0;
+  for (let t = 0; t < triangles.length; t += 3) {
+    const [a, b, c] = [2 * triangles[t], 2 * triangles[t + 1], 2 * triangles[t + 2]];
+    doubled += Math.max(0, (points[b] - points[a]) * (points[c + 1] - points[a + 1]) - (points[b + 1] - points[a + 1]) * (points[c] - points[a]));
+  }
+  return 0.5 * doubled;
 }
 
 function ringArea(ring, points) {

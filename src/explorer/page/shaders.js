@@ -37,6 +37,7 @@ void main() {
 uniform sampler2D areas;
 ${each('uniform sampler2D picture$;')}
 uniform float weights[${count}];
+uniform float levels[${count}];
 uniform bool in_light;
 uniform float height;
 uniform float opacity;
@@ -48,7 +49,7 @@ void main() {
   float area = texelFetch(areas, ivec2(gl_FragCoord.x, height - gl_FragCoord.y), 0).r;
   if (area == 0.0) discard;
   vec4 sum = vec4(0.0);
-  ${each('sum += weights[$] * premultiplied(texture(picture$, uv$));')}
+  ${each('sum += weights[$] * premultiplied(textureLod(picture$, uv$, levels[$]));')}
   if (in_light && sum.a > 0.0) sum.rgb = value(sum.rgb / sum.a) * sum.a;
   sum.rgb = mix(sum.rgb, tint.rgb * sum.a, tint.a);
   colour = sum * area * opacity;
