@@ -6,7 +6,8 @@ use rayon::prelude::*;
 
 use super::frames::{Words, asked_provider, numbers};
 use super::http::{Request, Response};
-use super::problem::Refusal;
+use super::model::Shown;
+use super::problem::{Problem, Refusal, Where};
 use super::session::Session;
 
 /// Cells along a side of a grid of weights.
@@ -22,7 +23,10 @@ struct Grid {
     places: Vec<f64>,
 }
 
-fn grid(request: &Request, standard: usize, most: usize) -> Result<Grid, Refusal> {
+fn grid(request: &Request, shown: &Shown, standard: usize, most: usize) -> Result<Grid, Refusal> {
+    if shown.framed_scene()?.dimension() != 2 {
+        return Err(Refusal::conflict(Problem::at("only a plane has maps", Where::Space)));
+    }
     let count = |name: &str| match request.value(name) {
         None => Ok(standard),
         Some(text) => {
@@ -53,7 +57,7 @@ fn grid(request: &Request, standard: usize, most: usize) -> Result<Grid, Refusal
 /// `GET api/grid`.
 pub(super) fn weights(request: &Request, session: &Session) -> Result<Response, Refusal> {
     let shown = session.shown();
-    let grid = grid(request, 64, MOST_CELLS)?;
+    let grid = grid(request, &shown, 64, MOST_CELLS)?;
     let provider = shown.provider(asked_provider(request)?)?;
     let mut weights = Vec::new();
     provider
@@ -72,7 +76,7 @@ pub(super) fn weights(request: &Request, session: &Session) -> Result<Response, 
 pub(super) fn validity(request: &Request, session: &Session) -> Result<Response, Refusal> {
     let shown = session.shown();
     let bench = shown.bench()?;
-    let grid = grid(request, 32, MOST_FRAMES)?;
+    let grid = grid(request, &shown, 32, MOST_FRAMES)?;
     let provider = shown.provider(asked_provider(request)?)?;
     let cell = |place: &[f64]| -> Result<(usize, [f64; 2]), Refusal> {
         let mut weights = Vec::new();
