@@ -1,15 +1,8 @@
 // WebGL2, as far as drawing puppets needs it.
 
-/** A context with render targets of floats, or null. */
+/** A context, or null. */
 export function context(canvas) {
-  const gl = canvas.getContext('webgl2', { alpha: true, antialias: false, depth: false, stencil: false, premultipliedAlpha: true });
-  if (!gl) return null;
-  const floats = gl.getExtension('EXT_color_buffer_float');
-  if (!floats && !gl.getExtension('EXT_color_buffer_half_float')) return null;
-  // Areas are added up: in 32 bits where that can be blended.
-  gl.areaFormat = floats && gl.getExtension('EXT_float_blend') ? gl.R32F : gl.R16F;
-  if (!floats) gl.areaFormat = gl.RGBA16F;
-  return gl;
+  return canvas.getContext('webgl2', { alpha: true, antialias: false, depth: true, stencil: false, premultipliedAlpha: true });
 }
 
 export function program(gl, vertex, fragment) {
@@ -35,20 +28,20 @@ export function program(gl, vertex, fragment) {
 /** Points in rows of this many texels. */
 export const POINTS_ROW = 1024;
 
-/** A texture that holds points, for `texelFetch`. */
+/** A texture that holds lists of points, one below the other, for `texelFetch`. */
 export class PointTexture {
-  constructor(gl, count) {
+  constructor(gl, count, lists = 1) {
     this.gl = gl;
     this.rows = Math.max(1, Math.ceil(count / POINTS_ROW));
     this.padded = new Float32Array(2 * POINTS_ROW * this.rows);
-    this.texture = texture(gl, gl.RG32F, POINTS_ROW, this.rows);
+    this.texture = texture(gl, gl.RG32F, POINTS_ROW, this.rows * lists);
   }
 
-  fill(points) {
+  fill(points, list = 0) {
     const { gl } = this;
     this.padded.set(points);
     gl.bindTexture(gl.TEXTURE_2D, this.texture);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, POINTS_ROW, this.rows, gl.RG, gl.FLOAT, this.padded);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, list * this.rows, POINTS_ROW, this.rows, gl.RG, gl.FLOAT, this.padded);
     return this;
   }
 
@@ -67,43 +60,15 @@ export function texture(gl, format, width, height) {
   return made;
 }
 
-/** A picture as a texture with levels. */
+/** A picture as a texture with levels; which one is used is said when it is. */
 export function pictureTexture(gl, bitmap) {
   const made = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, made);
   gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
   gl.generateMipmap(gl.TEXTURE_2D);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_NEAREST);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
   for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
   return made;
-}
-
-/** Where passes are drawn to: a texture, with depth if asked for. */
-export class Target {
-  constructor(gl, format, depth) {
-    Object.assign(this, { gl, format, depth, width: 0, height: 0, frame: gl.createFramebuffer() });
-  }
-
-  bind(width, height) {
-    const { gl } = this;
-    if (this.width !== width || this.height !== height) this.resize(width, height);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.frame);
-  }
-
-  resize(width, height) {
-    const { gl } = this;
-    Object.assign(this, { width, height });
-    gl.deleteTexture(this.texture ?? null);
-    this.texture = texture(gl, this.format, width, height);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.frame);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.texture, 0);
-    if (!this.depth) return;
-    gl.deleteRenderbuffer(this.buffer ?? null);
-    this.buffer = gl.createRenderbuffer();
-    gl.bindRenderbuffer(gl.RENDERBUFFER, this.buffer);
-    gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT24, width, height);
-    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, this.buffer);
-  }
 }

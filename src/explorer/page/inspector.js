@@ -73,13 +73,21 @@ function buildScene() {
       row('Folds', live(segments('Guard against folds', [['off', 'Leave'], ['repair', 'Repair']], () => store.scene.blend?.guard, (v) => setting('blend', 'guard', v))))),
     section('Texture',
       dragged('Sharpness', { min: 0, max: 1, step: 0.01 }, () => store.scene.texture?.sharpness ?? 0.5, 'texture', 'sharpness'),
-      row('Colours', live(segments('Blending of colours', [['plain', 'As stored'], ['linear', 'Light']], () => store.scene.texture?.blending, (v) => setting('texture', 'blending', v))))),
+      row('Colours', live(segments('Blending of colours', [['plain', 'As stored'], ['linear', 'Light']], () => store.scene.texture?.blending, (v) => setting('texture', 'blending', v)))),
+      drawingRow()),
     section('Compare',
       h('p', { class: 'faint small' }, 'B is shown in place of the scene’s own settings while it is on. Hold B to flip.'),
       compareSection()),
     scene.dimension === 2 ? pseudoSection() : null,
   ];
   panels.scene.replaceChildren(...children.filter(Boolean));
+}
+
+/** SVG drawings can be carried as curves, which this page cannot show. */
+function drawingRow() {
+  if (!store.scene.poses.some((pose) => /\.svg$/i.test(pose.source ?? ''))) return null;
+  return [row('Drawing', live(segments('Drawing', [['curves', 'Curves'], ['pixels', 'Pixels']], () => store.scene.texture?.drawing, (v) => setting('texture', 'drawing', v)))),
+    h('p', { class: 'faint small' }, 'Frames that are rendered can carry curves; the picture here is of pixels.')];
 }
 
 // The pose that is looked at.

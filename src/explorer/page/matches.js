@@ -343,6 +343,7 @@ function choose(name) {
   chosen = name;
   draw();
   drawList();
+  landmarksPanel.querySelector('.opened')?.scrollIntoView({ block: 'nearest' });
 }
 
 // The list of landmarks.

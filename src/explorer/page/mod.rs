@@ -26,6 +26,7 @@ const FRAME: &[PageFile] = &[
 
 const MODULES: &[PageFile] = modules![
     "api.js",
+    "areas.js",
     "bars.js",
     "bench.js",
     "controls.js",

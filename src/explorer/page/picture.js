@@ -14,7 +14,7 @@ stage.append(paper, canvas, note, badge);
 attachHandles(stage);
 
 const painter = new PuppetPainter(canvas);
-if (!painter.gl) note.textContent = 'This browser has no WebGL2 with float targets: the drawing cannot be shown.';
+if (!painter.gl) note.textContent = 'This browser has no WebGL2: the drawing cannot be shown.';
 
 /** Free room around the frame when it is fitted, in CSS pixels. */
 const ROOM = 20;

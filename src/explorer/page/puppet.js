@@ -1,10 +1,16 @@
 // Draws frames as `inbetween frame` does: the textures of all poses on the mesh, added up by their weights, cut by the exact area
-// that the blended outline covers of each pixel.
-import { context, PointTexture, pictureTexture, program, Target } from './gl.js';
-import { AREA, CUT, MESH, TEXTURED } from './shaders.js';
+// that the blended outline covers of each pixel. Where triangles overlap, the last one is seen: they are drawn from the last to the
+// first, each pixel once (by the depth buffer).
+import { coveredAreas } from './areas.js';
+import { context, PointTexture, pictureTexture, program, texture } from './gl.js';
+import { MESH, textured } from './shaders.js';
 
 /** A texture that counts for less is not drawn. */
 const FAINTEST = 1e-3;
+/** Textures that are drawn at once; of more, the heaviest. WebGL2 has 16 for sure, and two hold places and areas. */
+const MOST_TEXTURES = 13;
+/** Texels that a pixel may span before a smaller picture is used, as in `render::texture`. */
+const MOST_TEXELS_A_PIXEL = 2.28;
 /** How far colours reach beyond the mesh, of the drawing's size: the outline is finer than the mesh's boundary. */
 const SKIRT = 0.04;
 
@@ -13,27 +19,13 @@ export class PuppetPainter {
     this.canvas = canvas;
     this.gl = context(canvas);
     this.layers = [];
-    if (!this.gl) return;
-    this.build();
+    if (this.gl) this.build();
   }
 
   build() {
-    const { gl } = this;
-    this.textured = program(gl, ...TEXTURED);
-    this.area = program(gl, ...AREA);
-    this.cut = program(gl, ...CUT);
-    this.mesh = program(gl, ...MESH);
-    this.colours = new Target(gl, gl.RGBA16F, true);
-    this.areas = new Target(gl, gl.areaFormat, false);
-    this.nothing = gl.createVertexArray();
-    this.edges = gl.createVertexArray();
-    this.edgeBuffer = gl.createBuffer();
-    gl.bindVertexArray(this.edges);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.edgeBuffer);
-    gl.enableVertexAttribArray(0);
-    gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 0, 0);
-    gl.vertexAttribDivisor(0, 1);
-    gl.bindVertexArray(null);
+    this.programs = [];
+    this.mesh = program(this.gl, ...MESH);
+    this.areas = null;
   }
 
   /** Takes `api/puppet`, the meshes and, per layer and texture, a bitmap. */
@@ -45,19 +37,28 @@ export class PuppetPainter {
 
   layer(puppet, mesh, bitmaps) {
     const { gl } = this;
-    const textures = puppet.textures.map((texture, k) => {
-      const { width, height, origin, scale } = texture.colour;
+    const drawn = new PointTexture(gl, mesh.vertices, puppet.textures.length);
+    const textures = puppet.textures.map((of, k) => {
+      const { width, height, origin, scale } = of.colour;
+      drawn.fill(mesh.poses[of.pose], k);
       return {
         picture: pictureTexture(gl, bitmaps[k]),
-        drawn: new PointTexture(gl, mesh.vertices).fill(mesh.poses[texture.pose]),
+        row: k * drawn.rows,
+        area: areaOf(mesh.triangles, mesh.poses[of.pose]) * scale * scale,
         texels: [scale / width, scale / height, (-origin[0] * scale) / width, (-origin[1] * scale) / height],
       };
     });
     const corners = new Uint32Array(4 * mesh.triangles.length);
-    mesh.triangles.forEach((vertex, k) => corners.set([vertex, vertex, vertex, 0], 4 * k));
+    // The last triangle first, its corners in their order.
+    for (let k = 0, to = 0; k < mesh.triangles.length; k++, to += 4) {
+      const vertex = mesh.triangles[mesh.triangles.length - 3 - 3 * Math.floor(k / 3) + (k % 3)];
+      corners.fill(vertex, to, to + 3);
+    }
     const [low, high] = extent(mesh.poses[0]);
     return {
       textures,
+      drawn,
+      triangles: mesh.triangles,
       places: new PointTexture(gl, mesh.vertices),
       count: mesh.triangles.length,
       inside: this.corners(corners),
@@ -82,7 +83,8 @@ export class PuppetPainter {
 
   free(layer) {
     const { gl } = this;
-    layer.textures.forEach(({ picture, drawn }) => (gl.deleteTexture(picture), drawn.free()));
+    layer.textures.forEach(({ picture }) => gl.deleteTexture(picture));
+    layer.drawn.free();
     layer.places.free();
     for (const { array, buffer } of [layer.inside, layer.skirt]) {
       gl.deleteVertexArray(array);
@@ -94,25 +96,27 @@ export class PuppetPainter {
   begin(view) {
     const { gl, canvas } = this;
     this.view = [view.scale, view.x, view.y];
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, canvas.width, canvas.height);
-    gl.disable(gl.SCISSOR_TEST);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT);
+    gl.frontFace(gl.CW);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
 
   /** Draws a frame on what is there. */
   frame(frame, { opacity = 1, tint = [0, 0, 0, 0], inLight = false } = {}) {
+    const { gl } = this;
     for (const k of frame.order) {
       const shape = frame.layers[k];
       const layer = this.layers[k];
       if (!layer || shape.opacity <= 0) continue;
       const window = this.window(shape.rings);
       if (!window) continue;
-      layer.places.fill(shape.positions);
-      this.drawColours(layer, shape, window, inLight);
-      this.drawAreas(shape.rings, window);
-      this.drawCut(window, opacity * shape.opacity, tint, inLight);
+      this.fillAreas(shape.rings, window);
+      gl.enable(gl.SCISSOR_TEST);
+      gl.scissor(window[0], this.canvas.height - window[3], window[2] - window[0], window[3] - window[1]);
+      this.drawLayer(layer, shape, opacity * shape.opacity, tint, inLight);
     }
   }
 
@@ -136,125 +140,78 @@ export class PuppetPainter {
     return window[0] < window[2] && window[1] < window[3] ? window : null;
   }
 
-  drawColours(layer, shape, window, inLight) {
+  drawLayer(layer, shape, opacity, tint, inLight) {
     const { gl, canvas } = this;
-    const { made, at } = this.textured;
-    this.colours.bind(canvas.width, canvas.height);
-    gl.viewport(0, 0, canvas.width, canvas.height);
-    gl.enable(gl.SCISSOR_TEST);
-    gl.scissor(window[0], window[1], window[2] - window[0], window[3] - window[1]);
-    gl.clearColor(0, 0, 0, 0);
-    gl.depthMask(true);
-    gl.colorMask(true, true, true, true);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    const total = shape.textureWeights.reduce((sum, weight) => sum + Math.max(weight, 0), 0);
+    const shown = layer.textures
+      .map((of, k) => ({ ...of, weight: shape.textureWeights[k] }))
+      .filter(({ weight }) => weight > FAINTEST * total)
+      .sort((a, b) => b.weight - a.weight)
+      .slice(0, MOST_TEXTURES);
+    if (shown.length === 0) return;
+    const whole = shown.reduce((sum, { weight }) => sum + weight, 0);
+    const { made, at } = (this.programs[shown.length] ??= program(gl, ...textured(shown.length)));
     gl.useProgram(made);
+    gl.activeTexture(gl.TEXTURE0);
+    layer.places.fill(shape.positions);
+    bound(gl, 0, layer.places.texture);
+    bound(gl, 1, this.areas.texture);
+    bound(gl, 2, layer.drawn.texture);
+    gl.uniform1i(at.places, 0);
+    gl.uniform1i(at.areas, 1);
+    gl.uniform1i(at.drawn, 2);
     gl.uniform2f(at.size, canvas.width, canvas.height);
     gl.uniform3fv(at.view, this.view);
     gl.uniform1f(at.skirt, layer.reach);
-    gl.uniform1i(at.places, 0);
-    gl.uniform1i(at.drawn, 1);
-    gl.uniform1i(at.picture, 2);
-    gl.uniform1i(at.in_light, inLight);
-    bound(gl, 0, layer.places.texture);
-    const total = shape.textureWeights.reduce((sum, weight) => sum + Math.max(weight, 0), 0);
-    const shown = layer.textures
-      .map((texture, k) => ({ ...texture, weight: shape.textureWeights[k] }))
-      .filter(({ weight }) => weight > FAINTEST * total);
-    const whole = shown.reduce((sum, { weight }) => sum + weight, 0);
-    gl.enable(gl.DEPTH_TEST);
-    gl.frontFace(gl.CCW);
-    gl.disable(gl.BLEND);
-    // Depth first: each pixel belongs to one triangle, whatever the number of textures.
-    const pass = () => {
-      gl.uniform1f(at.triangles, layer.count / 3);
-      gl.enable(gl.CULL_FACE);
-      gl.bindVertexArray(layer.inside.array);
-      gl.drawArrays(gl.TRIANGLES, 0, layer.count);
-      gl.disable(gl.CULL_FACE);
-    };
-    gl.colorMask(false, false, false, false);
-    gl.depthFunc(gl.LEQUAL);
-    if (shown.length > 0) bound(gl, 1, shown[0].drawn.texture), bound(gl, 2, shown[0].picture);
-    pass();
-    gl.colorMask(true, true, true, true);
-    gl.depthMask(false);
-    gl.enable(gl.BLEND);
-    for (const texture of shown) {
-      bound(gl, 1, texture.drawn.texture);
-      bound(gl, 2, texture.picture);
-      gl.uniform4fv(at.texels, texture.texels);
-      gl.uniform1f(at.weight, texture.weight / whole);
-      gl.depthFunc(gl.EQUAL);
-      gl.blendFunc(gl.ONE, gl.ONE);
-      pass();
-    }
-    // Skirts overlap each other: only where nothing is yet, so one after the other would add up. The heaviest texture serves.
-    const heaviest = shown.reduce((best, texture) => (!best || texture.weight > best.weight ? texture : best), null);
-    if (heaviest) {
-      bound(gl, 1, heaviest.drawn.texture);
-      bound(gl, 2, heaviest.picture);
-      gl.uniform4fv(at.texels, heaviest.texels);
-      gl.uniform1f(at.weight, 1);
-      gl.uniform1f(at.triangles, 0);
-      gl.depthFunc(gl.LEQUAL);
-      gl.blendFunc(gl.ONE_MINUS_DST_ALPHA, gl.ONE);
-      gl.bindVertexArray(layer.skirt.array);
-      gl.drawArrays(gl.TRIANGLES, 0, layer.skirtCount);
-    }
-    gl.disable(gl.DEPTH_TEST);
-  }
-
-  drawAreas(rings, window) {
-    const { gl, canvas } = this;
-    const { made, at } = this.area;
-    const ends = ringEdges(rings);
-    this.areas.bind(canvas.width, canvas.height);
-    gl.clearColor(0, 0, 0, 0);
-    gl.clear(gl.COLOR_BUFFER_BIT);
-    gl.useProgram(made);
-    gl.uniform2f(at.size, canvas.width, canvas.height);
-    gl.uniform3fv(at.view, this.view);
-    gl.uniform4fv(at.window, window);
-    gl.bindVertexArray(this.edges);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.edgeBuffer);
-    gl.bufferData(gl.ARRAY_BUFFER, ends, gl.STREAM_DRAW);
-    gl.enable(gl.BLEND);
-    gl.blendFunc(gl.ONE, gl.ONE);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, ends.length / 4);
-  }
-
-  drawCut(window, opacity, tint, inLight) {
-    const { gl, canvas } = this;
-    const { made, at } = this.cut;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.scissor(window[0], canvas.height - window[3], window[2] - window[0], window[3] - window[1]);
-    gl.useProgram(made);
-    gl.uniform1i(at.colours, 0);
-    gl.uniform1i(at.areas, 1);
     gl.uniform1f(at.height, canvas.height);
     gl.uniform1f(at.opacity, opacity);
-    gl.uniform1i(at.in_light, inLight);
     gl.uniform4fv(at.tint, tint);
-    bound(gl, 0, this.colours.texture);
-    bound(gl, 1, this.areas.texture);
-    gl.bindVertexArray(this.nothing);
-    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.uniform1i(at.in_light, inLight);
+    gl.uniform1iv(at['rows[0]'], shown.map(({ row }) => row));
+    gl.uniform4fv(at['texels[0]'], shown.flatMap(({ texels }) => texels));
+    gl.uniform1fv(at['weights[0]'], shown.map(({ weight }) => weight / whole));
+    // One level for all of a texture, as the command does it.
+    const seen = Math.max(areaOf(layer.triangles, shape.positions) * this.view[0] ** 2, 1e-6);
+    const level = (area) => Math.max(0, Math.ceil(Math.log2(Math.sqrt(area / seen) / MOST_TEXELS_A_PIXEL)));
+    gl.uniform1fv(at['levels[0]'], shown.map(({ area }) => level(area)));
+    shown.forEach(({ picture }, k) => {
+      bound(gl, 3 + k, picture);
+      gl.uniform1i(at[`picture${k}`], 3 + k);
+    });
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LESS);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.CULL_FACE);
+    gl.bindVertexArray(layer.inside.array);
+    gl.drawArrays(gl.TRIANGLES, 0, layer.count);
+    // The skirt: only where nothing is yet.
+    gl.disable(gl.CULL_FACE);
+    gl.bindVertexArray(layer.skirt.array);
+    gl.drawArrays(gl.TRIANGLES, 0, layer.skirtCount);
+    gl.disable(gl.DEPTH_TEST);
     gl.disable(gl.SCISSOR_TEST);
+  }
+
+  /** Fills the texture of areas where the window is; its rows count from the top. */
+  fillAreas(rings, window) {
+    const { gl, canvas } = this;
+    if (this.areas?.width !== canvas.width || this.areas.height !== canvas.height) {
+      gl.deleteTexture(this.areas?.texture ?? null);
+      this.areas = { width: canvas.width, height: canvas.height, texture: texture(gl, gl.R8, canvas.width, canvas.height) };
+    }
+    bound(gl, 1, this.areas.texture);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, window[0], window[1], window[2] - window[0], window[3] - window[1], gl.RED, gl.UNSIGNED_BYTE, coveredAreas(rings, this.view, window));
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
   }
 
   /** The mesh of a frame, over it. Colours are premultiplied. */
   wires(frame, { line, wrong, thickness = 0.5 }) {
     const { gl, canvas } = this;
     const { made, at } = this.mesh;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.useProgram(made);
-    gl.enable(gl.BLEND);
-    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    gl.disable(gl.CULL_FACE);
     gl.uniform2f(at.size, canvas.width, canvas.height);
     gl.uniform3fv(at.view, this.view);
-    gl.uniform1f(at.triangles, 0);
     gl.uniform1i(at.places, 0);
     gl.uniform4fv(at.line, line);
     gl.uniform4fv(at.wrong, wrong);
@@ -262,6 +219,7 @@ export class PuppetPainter {
     for (const k of frame.order) {
       const layer = this.layers[k];
       if (!layer) continue;
+      gl.activeTexture(gl.TEXTURE0);
       layer.places.fill(frame.layers[k].positions);
       bound(gl, 0, layer.places.texture);
       gl.bindVertexArray(layer.inside.array);
@@ -270,25 +228,9 @@ export class PuppetPainter {
   }
 }
 
-function bound(gl, unit, texture) {
+function bound(gl, unit, what) {
   gl.activeTexture(gl.TEXTURE0 + unit);
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-}
-
-/** The edges of all rings, as x, y, x, y. */
-function ringEdges(rings) {
-  const ends = new Float32Array(2 * rings.reduce((sum, ring) => sum + ring.length, 0));
-  let next = 0;
-  for (const ring of rings) {
-    const count = ring.length;
-    for (let k = 0; k < count; k += 2, next += 4) {
-      ends[next] = ring[k];
-      ends[next + 1] = ring[k + 1];
-      ends[next + 2] = ring[(k + 2) % count];
-      ends[next + 3] = ring[(k + 3) % count];
-    }
-  }
-  return ends;
+  gl.bindTexture(gl.TEXTURE_2D, what);
 }
 
 /** Two triangles an edge of the boundary, from it outward. */
@@ -306,6 +248,16 @@ function skirt(mesh) {
     }
   });
   return new Uint32Array(corners);
+}
+
+/** The area of the triangles that are not inverted. */
+function areaOf(triangles, points) {
+  let doubled = 0;
+  for (let t = 0; t < triangles.length; t += 3) {
+    const [a, b, c] = [2 * triangles[t], 2 * triangles[t + 1], 2 * triangles[t + 2]];
+    doubled += Math.max(0, (points[b] - points[a]) * (points[c + 1] - points[a + 1]) - (points[b + 1] - points[a + 1]) * (points[c] - points[a]));
+  }
+  return 0.5 * doubled;
 }
 
 function ringArea(ring, points) {
