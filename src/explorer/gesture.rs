@@ -150,7 +150,7 @@ fn smoothed(samples: &[Sample], width: f64) -> Vec<Sample> {
 fn thinned(samples: Vec<Sample>) -> Vec<Sample> {
     let every = samples.len().div_ceil(MOST_FITTED).max(1);
     let last = samples.len() - 1;
-    let keep = |k: usize| k % every == 0 || k == last;
+    let keep = |k: usize| k.is_multiple_of(every) || k == last;
     samples
         .into_iter()
         .enumerate()

@@ -26,6 +26,9 @@ use super::problem::{Problem, Refusal};
 /// A picture's place and its file.
 type EncodedPicture = (Value, Result<Arc<Vec<u8>>, Refusal>);
 
+/// By layer, drawing and kind.
+type EncodedPictures = BTreeMap<(usize, usize, bool), EncodedPicture>;
+
 /// The state of an explored scene.
 #[derive(Debug)]
 pub(crate) struct Session {
@@ -36,8 +39,8 @@ pub(crate) struct Session {
     changed: Condvar,
     /// Told whenever there is something to compute.
     wanted: Condvar,
-    /// By layer, drawing and kind, of the pictures' revision.
-    pictures: Mutex<(u64, BTreeMap<(usize, usize, bool), EncodedPicture>)>,
+    /// Those that were asked for, with the pictures' revision that they are of.
+    pictures: Mutex<(u64, EncodedPictures)>,
     /// Handles that are being dragged.
     pub(super) draggers: Draggers,
     /// The export.
