@@ -118,7 +118,7 @@ impl From<&PipelineError> for Problem {
 #[derive(Debug, Clone)]
 pub(crate) struct Refusal {
     status: u16,
-    problem: Problem,
+    problem: Box<Problem>,
 }
 
 impl Refusal {
@@ -126,7 +126,7 @@ impl Refusal {
     pub(crate) fn bad(message: impl std::fmt::Display) -> Self {
         Self {
             status: 400,
-            problem: Problem::new(message),
+            problem: Box::new(Problem::new(message)),
         }
     }
 
@@ -134,7 +134,7 @@ impl Refusal {
     pub(crate) fn conflict(problem: impl Into<Problem>) -> Self {
         Self {
             status: 409,
-            problem: problem.into(),
+            problem: Box::new(problem.into()),
         }
     }
 
@@ -142,7 +142,7 @@ impl Refusal {
     pub(crate) fn failed(message: impl std::fmt::Display) -> Self {
         Self {
             status: 500,
-            problem: Problem::new(message),
+            problem: Box::new(Problem::new(message)),
         }
     }
 

@@ -22,7 +22,9 @@ use super::figure::{self, Figure, Posed};
 use super::layer::{self, LayerShape, Part, PosedLayer};
 use super::layout::placed;
 use super::mapping::{Boundaries, map_drawings_again};
-use super::{EditableWeights, MappingReport, PipelineError, editable_weights, landmarks, read_drawings};
+use super::{
+    EditableWeights, MappingReport, PipelineError, checked_weights, editable_weights, landmarks, read_drawings,
+};
 use crate::input::Drawing;
 use crate::math::Point;
 use crate::render::Camera;
@@ -253,7 +255,8 @@ impl Workbench {
     /// # Errors
     /// [`PipelineError`] if there is not one weight a pose, or they do not sum to 1.
     pub fn posed(&self, weights: &[f64], sharpness: Option<f64>) -> Result<Posed, PipelineError> {
-        self.figure.posed_sharpened(weights, sharpness)
+        let weights = checked_weights(weights, &self.scene.names())?;
+        self.figure.posed_sharpened(&weights, sharpness)
     }
 
     /// The blended outlines of a layer: outer ring first.

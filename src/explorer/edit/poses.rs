@@ -88,7 +88,7 @@ pub(super) fn set_handles(
 ) -> Result<(), Refusal> {
     let table = named(document, "pose", pose)?;
     let of = text_of(table, "deform_of").ok_or_else(|| missing(format!("copy '{pose}' with handles")))?;
-    let value = handles_value(context, &of.to_owned(), handles);
+    let value = handles_value(context, of, handles);
     set_value(table, "handles", value);
     Ok(())
 }
