@@ -79,6 +79,8 @@ async function proofs() {
   if (plane) await movedPose(page, answer);
   await landmark(page);
   if (plane) await gesture(page, answer);
+  if (plane) await maps(page);
+  await onPicture(page);
   await outsideChange(page);
   await exported(page);
   await labels(page);
@@ -357,7 +359,7 @@ async function landmark(page) {
   await edited(page, 'move landmark');
   const moved = await read();
   const again = Math.max(...moved.samples.flatMap((points, k) => points.map((value, i) => Math.abs(value - after.samples[k][i]))));
-  check(again > 0.001 * scale, 'dragging the landmark changes the match again');
+  check(again > 0.001 * scale, `dragging the landmark changes the match again, by up to ${again.toFixed(2)} units`);
   await page.locator('#probe').focus();
   await page.click('#undo');
   await edited(page, 'add a landmark');
@@ -367,6 +369,83 @@ async function landmark(page) {
   check(Buffer.compare(readFileSync(scene), bytes) === 0, 'undo of the button restores the bytes');
   await page.click('[data-value="picture"]');
   await drawn(page);
+}
+
+/** Whether a screenshot of an element changes by what is done. */
+async function changes(page, selector, work) {
+  const before = decodePng(await page.locator(selector).screenshot());
+  await work();
+  await page.waitForTimeout(600);
+  const after = decodePng(await page.locator(selector).screenshot());
+  return difference(after, before).mean > 0.2;
+}
+
+async function maps(page) {
+  check(await changes(page, '#pad', () => page.click('[data-value="weight"]')), 'the weight map is shown');
+  check(await changes(page, '#pad', () => page.locator('#weights .weight').nth(1).click()), 'and that of another pose');
+  check(await changes(page, '#pad', () => page.click('[data-value="validity"]')), 'the validity map is shown');
+  await page.click('[data-value="plain"]');
+  check(await changes(page, '#stage', () => page.click('#mesh')), 'the mesh is laid over the picture');
+  await page.click('#mesh');
+  check(await changes(page, '#stage', () => page.click('[data-value="poses"]')), 'the poses are laid under it');
+  await page.click('[data-value="off"]');
+  await page.locator('#probe').focus();
+  await page.keyboard.press('Home');
+  for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
+  await drawn(page);
+  const own = await weights(page);
+  await page.keyboard.down('b');
+  await page.waitForFunction((old) => document.querySelector('#weights').textContent !== old, await page.textContent('#weights'));
+  const other = await weights(page);
+  await page.keyboard.up('b');
+  check(other.some((weight, k) => Math.abs(weight - own[k]) > 1e-3), 'while B is held the other provider is shown');
+  await page.waitForFunction((old) => document.querySelector('#weights').textContent !== old, await page.textContent('#weights')).catch(() => {});
+}
+
+async function onPicture(page) {
+  const bytes = readFileSync(scene);
+  await page.keyboard.press('Home');
+  await drawn(page);
+  // Somewhere on the drawing: the middle of a triangle near its edge.
+  const spot = await page.evaluate(async () => {
+    const { store } = await import('./state.js');
+    const { toStage } = await import('./picture.js');
+    const k = store.frame.order.at(-1);
+    const { positions } = store.frame.layers[k];
+    const { triangles } = store.meshes[k];
+    const middle = (t) => [0, 1].map((d) => (positions[2 * triangles[t] + d] + positions[2 * triangles[t + 1] + d] + positions[2 * triangles[t + 2] + d]) / 3);
+    let best = null;
+    for (let t = 0; t < triangles.length; t += 3) {
+      const at = middle(t);
+      if (!best || at[0] < best[0]) best = at;
+    }
+    const box = document.getElementById('stage').getBoundingClientRect();
+    const [x, y] = toStage(best);
+    return [x + box.x, y + box.y];
+  });
+  const before = await shownPlace(page);
+  await drag(page, spot, [spot[0] + 14, spot[1] - 40], 6, 40);
+  await page.waitForTimeout(500);
+  await drawn(page);
+  check((await shownPlace(page)).join() !== before.join(), 'dragging the drawing moves the probe to where it reaches');
+  await page.keyboard.press('Home');
+  await drawn(page);
+  const count = (await page.evaluate(async () => (await (await fetch('api/scene')).json()).poses.length));
+  await page.click('[data-value="bend"]');
+  await page.waitForTimeout(400);
+  await page.mouse.click((await page.locator('#stage').boundingBox()).x + (await page.locator('#stage').boundingBox()).width / 2, spot[1] + 20);
+  await drag(page, spot, [spot[0] - 8, spot[1] - 50], 6, 40);
+  await page.locator('#place input').first().fill('0.37');
+  await page.locator('#place input').first().press('Enter');
+  await page.click('#keep-bent');
+  await edited(page, 'add a pose');
+  const after = await page.evaluate(async () => (await (await fetch('api/scene')).json()).poses);
+  check(after.length === count + 1 && after.at(-1).kind === 'deformed', `handles make a new pose, '${after.at(-1).name}', at ${after.at(-1).at}`);
+  await page.locator('#probe').focus();
+  await page.keyboard.press('Control+z');
+  await page.waitForFunction(async () => (await (await fetch('api/state')).json()).undo === null);
+  await saved(page);
+  check(Buffer.compare(readFileSync(scene), bytes) === 0, 'undo restores the bytes after a new pose');
 }
 
 async function gesture(page, answer) {

@@ -16,7 +16,7 @@ const panel = toggle('panel', 'Inspector', () => app.dataset.inspector !== 'clos
   app.dataset.inspector = open ? 'open' : 'closed';
   panel.update();
 });
-if (innerWidth < 1100) {
+if (innerWidth < 1200) {
   app.dataset.inspector = 'closed';
   panel.update();
 }

@@ -8,6 +8,8 @@ const waiting = [];
 /** Milliseconds from request to answer of the latest frames. */
 export const roundTrips = [];
 
+// Pointers move once a displayed frame, so that is how often frames are asked for.
+
 /** What a comparison shows in place of the scene's own settings. */
 const instead = () => store.view.compare ?? {};
 
@@ -24,7 +26,7 @@ async function ask() {
     if (!(error instanceof Refused)) await new Promise((wait) => setTimeout(wait, 500));
   }
   asking = false;
-  if (wanted) requestAnimationFrame(ask);
+  if (wanted) ask();
   else waiting.splice(0).forEach((done) => done());
 }
 
@@ -34,13 +36,10 @@ async function askFrame(place, started) {
   if (roundTrips.length > 240) roundTrips.shift();
   const [frame] = readFrames(words);
   frame.place = place;
-  // A frame of meshes that are not here yet would be drawn with the wrong triangles.
-  if (frame.shape === store.puppet?.shape) {
-    store.frame = frame;
-    emit('frame');
-  } else {
-    wanted = true;
-  }
+  // A frame of meshes that are not here yet would be drawn with the wrong triangles; when they are, another one is asked for.
+  if (frame.shape !== store.puppet?.shape) return;
+  store.frame = frame;
+  emit('frame');
 }
 
 /** Of a scene without a mesh the weights alone. */

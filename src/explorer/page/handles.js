@@ -100,12 +100,21 @@ function basePose() {
 const layerPose = (pose) => store.puppet.layers[store.layer].poses.indexOf(pose);
 
 let basis = null;
+/** The bent pose whose handles are moved; null: a new one. */
+let editing = null;
 /** A layer, a ring: how the outline of the pose is carried by the mesh. */
 let edges = [];
 /** Shows the pose that is going to be bent. */
 async function beginBend() {
   handles = [];
   basis = basePose();
+  // A pose that is bent already is bent on: its handles are those of the scene.
+  const pose = store.scene.poses[basis];
+  editing = pose.kind === 'deformed' && store.puppet.layers.length === 1 ? pose.name : null;
+  if (editing) {
+    handles = pose.handles.map(({ from, to }) => ({ from: from.slice(), to: to.slice() }));
+    basis = store.scene.poses.findIndex((other) => other.name === pose.deform_of);
+  }
   latest = null;
   edges = [];
   const own = layerPose(basis);
@@ -222,11 +231,13 @@ async function keep() {
   const of = store.scene.poses[basis];
   const many = store.scene.layers.length > 1 || store.scene.layers[0]?.name !== store.scene.name;
   const layer = many ? store.scene.layers[store.layer].name : undefined;
-  const op = {
+  const op = editing ? {
+    op: 'set_handles', pose: editing, handles: handles.map(({ from, to }) => ({ from: from.map((v) => rounded(v, 2)), to: to.map((v) => rounded(v, 2)) })),
+  } : {
     op: 'add_deformed_pose', of: of.name, at: store.place.map((v) => rounded(v)),
     handles: handles.map(({ from, to }) => ({ from: from.map((v) => rounded(v, 2)), to: to.map((v) => rounded(v, 2)), ...(layer ? { layer } : {}) })),
   };
-  const state = await edit([op], `add a pose bent from '${of.name}'`);
+  const state = await edit([op], editing ? `move handles of '${editing}'` : `add a pose bent from '${of.name}'`);
   if (state) emit('tool', 'reach');
 }
 
@@ -254,11 +265,11 @@ function drawBar() {
   const now = `${pose} ${handles.length} ${store.place}`;
   if (said === now) return;
   said = now;
-  const hint = handles.length < 2 ? 'Click on the drawing to pin it, drag to bend it.' : `Becomes a pose at the probe.`;
+  const hint = editing ? 'Drag its handles, or click to add one.' : handles.length < 2 ? 'Click on the drawing to pin it, drag to bend it.' : `Becomes a pose at the probe.`;
   bar.replaceChildren(
-    h('span', {}, 'Bending ', h('b', {}, pose)), h('span', { class: 'faint' }, hint),
+    h('span', {}, 'Bending ', h('b', {}, editing ?? pose)), h('span', { class: 'faint clip' }, hint),
     h('button', { type: 'button', class: 'bordered', disabled: handles.length === 0, onclick: () => { handles = []; deform(); said = ''; drawHandles(); } }, 'Clear'),
-    h('button', { type: 'button', class: 'main', id: 'keep-bent', disabled: handles.length === 0, onclick: keep }, 'Add pose'));
+    h('button', { type: 'button', class: 'main', id: 'keep-bent', disabled: handles.length === 0, onclick: keep }, editing ? 'Save handles' : 'Add pose'));
 }
 
 on('view', (changes) => {

@@ -95,7 +95,9 @@ function draw() {
   paper.style.background = background && background !== 'transparent' ? background : '';
   paper.classList.toggle('hidden', !store.frame?.layers.length);
   if (painter.gl) note.textContent = store.scene && !(store.state.revisions.shape > 0) ? 'There is no drawing yet: the scene cannot be mapped. Matches shows what can be read.' : '';
-  if (!painter.gl || !loaded || !store.frame?.layers.length) {
+  // While new meshes are on their way the last picture stays.
+  if (store.frame?.layers.length && (loaded !== store.puppet || store.frame.shape !== loaded?.shape)) return;
+  if (!painter.gl || !store.frame?.layers.length) {
     if (store.frame) tellWhat();
     return;
   }
@@ -245,7 +247,9 @@ canvas.addEventListener('pointerdown', (event) => {
 badge.addEventListener('click', () => emit('toggle-mesh'));
 
 on('shape', load);
-on('frame scene zoom theme', redraw);
+// At once: it is shown with the next displayed frame, not the one after.
+on('frame', draw);
+on('scene zoom theme', redraw);
 on('view', (changes) => {
   stage.dataset.tool = store.view.tool;
   redraw();
