@@ -39,7 +39,9 @@ pub enum DrawingFiles {
     Reread,
 }
 
-/// A scene's character before it is painted. See the [module](self).
+/// A scene's character before it is painted, made again after every edit from what the edit leaves alone.
+///
+/// Its shapes are those of a [`Character`](super::Character) of the same scene, to the last bit.
 #[derive(Debug, Clone)]
 pub struct Workbench {
     /// As it was given; its layers are what mappings are made of.
