@@ -439,6 +439,7 @@ async function onPicture(page) {
   await page.locator('#place input').first().press('Enter');
   await page.click('#keep-bent');
   await edited(page, 'add a pose');
+  await page.waitForFunction(async (wanted) => (await (await fetch('api/scene')).json()).poses.length === wanted, count + 1, { timeout: 20000 }).catch(() => {});
   const after = await page.evaluate(async () => (await (await fetch('api/scene')).json()).poses);
   const made = after.find((pose) => pose.kind === 'deformed' && Math.abs(pose.at[0] - 0.37) < 1e-9);
   check(after.length === count + 1 && made, `handles make a new pose, '${made?.name}', at ${made?.at}`);

@@ -262,7 +262,8 @@ const dot = (name, [cx, cy], r) => set(s('circle', { class: name }), { cx, cy, r
 let said = '';
 function drawBar() {
   const pose = store.scene.poses[basis]?.name ?? '';
-  const now = `${pose} ${handles.length} ${store.place}`;
+  // Buttons that are made again under a finger that presses them are not pressed.
+  const now = `${pose} ${editing ?? ''} ${handles.length}`;
   if (said === now) return;
   said = now;
   const hint = editing ? 'Drag its handles, or click to add one.' : handles.length < 2 ? 'Click on the drawing to pin it, drag to bend it.' : `Becomes a pose at the probe.`;

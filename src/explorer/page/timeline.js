@@ -26,9 +26,14 @@ function placeAt(t) {
   return at[k].map((value, d) => value + part * (next[d] - value));
 }
 
+/** Whether it is the timeline that moves the probe. */
+let leads = false;
+
 function seek(t) {
   time = clamp(t, 0, duration());
+  leads = true;
   if (path?.at.length) moveTo(placeAt(time + (path.start ?? 0)).map((v) => rounded(v, 6)));
+  leads = false;
   drawHead();
 }
 
@@ -232,6 +237,13 @@ export function escapeGesture() {
   return true;
 }
 
+// Whoever takes the probe, or bends a pose where it is, takes it from the playback.
+on('place', () => {
+  if (playing && !leads) play(false);
+});
+on('view', ({ tool }) => {
+  if (playing && tool === 'bend') play(false);
+});
 on('recorded', (samples) => {
   store.gesture = { samples };
   settings.duration = null;
