@@ -19,7 +19,8 @@
 //! | [`blend`] | N weights | the vertices of one mesh |
 //! | [`texture`] | N weights | how much of each drawing is seen |
 //! | [`render`] | vertices and weights | [`Frame`](render::Frame) |
-//! | [`export`] | frames | PNG, GIF, APNG |
+//! | [`export`] | frames | PNG, GIF, video, SVG, Lottie, glTF, … |
+//! | [`shape3d`] | forms in space and a place among them | a form in space |
 //!
 //! [`pipeline`] wires them together; [`Character`](pipeline::Character) is the whole of it, built once and asked for frames from any thread:
 //!

@@ -8,6 +8,7 @@ const FOUNDATIONS: [&str; 4] = ["math", "mesh", "outline", "solve"];
 
 /// What each stage may use of other stages: types that it consumes or hands on.
 const STAGES: [(&str, &[&str]); 11] = [
+    // OBJ files hold forms.
     ("input", &["shape3d"]),
     ("matching", &[]),
     ("compatible", &["matching"]),
@@ -15,11 +16,11 @@ const STAGES: [(&str, &[&str]); 11] = [
     ("weights", &[]),
     ("blend", &["pose"]),
     ("texture", &[]),
-    ("render", &["input", "matching", "pose", "shape3d"]),
+    ("render", &["input", "matching", "pose"]),
     // The forms' weights are those of the radial basis; textures are blended as frames are.
     ("shape3d", &["render", "weights"]),
-    // The scene files name the options of what they describe.
-    ("scene", &["blend", "shape3d", "weights"]),
+    // The scene file names the blend's own options.
+    ("scene", &["blend"]),
     // The runtime file holds poses and the blend's own options.
     ("export", &["blend", "pose", "render", "shape3d"]),
 ];
