@@ -265,12 +265,10 @@ impl Cast {
             })
             .collect();
         // A deformed copy shows the drawing that it is a copy of.
-        let drawing = |original: usize| drawn.iter().position(|&pose| pose == original).unwrap_or(0);
-        let texture_of = self.scene.originals().into_iter().map(drawing).collect();
         Painter::new(
             &self.mapping,
             textures,
-            texture_of,
+            self.scene.shown_drawings(),
             self.silhouette.clone(),
             camera,
             PaintOptions::default(),

@@ -43,11 +43,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let places = PLACES.map(|x| vec![x]);
     let basis = RbfWeights::new(&places, &RbfOptions::default())?;
     let parts = Parts::of_the_first()?;
-    let weights = |x: f64| -> Result<Vec<f64>, Box<dyn Error>> {
-        let mut weights = Vec::new();
-        basis.weights(&[x], &mut weights)?;
-        Ok(weights)
-    };
+    let weights = |x: f64| basis.weights_at(&[x]);
     // The two ways to the first basis function.
     for k in 0..=20 {
         let x = f64::from(k) / 20.0;

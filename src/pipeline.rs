@@ -36,6 +36,7 @@ pub use deformed::DeformedPose;
 pub use drawings::{read_drawing_of, read_drawings};
 pub use error::PipelineError;
 pub use figure::Posed;
+pub use landmarks::INTERIOR_DEPTH;
 pub use layer::{LayerShape, PosedLayer};
 pub use layout::{automatic_places, laid_out};
 pub use mapping::{map_drawings, map_drawings_observed};

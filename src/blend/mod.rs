@@ -74,6 +74,12 @@ pub enum Stretch {
     Log,
 }
 
+impl Stretch {
+    /// What each is called in scene files and on the command line.
+    pub const NAMED: [(&'static str, Self); 3] =
+        [("linear", Self::Linear), ("limited", Self::Limited), ("log", Self::Log)];
+}
+
 /// What moves linearly in the weights, or as the caller of a frame says ([`RigidBlend::blend_anchored`]).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Anchor {

@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "canonical|POSE", default_value = "canonical")]
     reference: String,
     /// How stretches are blended
-    #[arg(long, default_value = "linear", value_parser = ["linear", "limited", "log"])]
+    #[arg(long, default_value = "linear", value_parser = Stretch::NAMED.map(|(name, _)| name))]
     stretch: String,
     /// What happens to triangles that come out inverted
     #[arg(long, default_value = "off", value_parser = ["off", "repair"])]
@@ -58,11 +58,8 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
             )
         })?),
     };
-    let stretch = match arguments.stretch.as_str() {
-        "limited" => Stretch::Limited,
-        "log" => Stretch::Log,
-        _ => Stretch::Linear,
-    };
+    let named = Stretch::NAMED.into_iter().find(|(name, _)| *name == arguments.stretch);
+    let stretch = named.map_or(Stretch::default(), |(_, stretch)| stretch);
     let output = Output::open(&arguments.output)?;
     let options = BlendOptions {
         reference,

@@ -54,10 +54,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     let path: Vec<Vec<f64>> = (0..=animation.frame_count())
         .map(|k| animation.at(animation.time_of_frame(k)))
         .collect();
-    let weights = |place: &[f64]| {
-        let mut weights = Vec::new();
-        provider.weights(place, &mut weights).ok().map(|()| weights)
-    };
+    let weights = |place: &[f64]| provider.weights_at(place).ok();
     let sections = Sections::new(&mapping, &report.matching, &report.landmarks);
     let diagram = Diagram {
         mapping: &mapping,

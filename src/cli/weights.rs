@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "COLSxROWS")]
     grid: Option<Grid>,
     /// Which weights; the scene's choice otherwise
-    #[arg(long, value_parser = ["biharmonic", "rbf"])]
+    #[arg(long, value_parser = Provider::NAMED.map(|(name, _)| name))]
     provider: Option<String>,
     /// A file, or - for standard output
     #[arg(short, long, value_name = "OUT", default_value = "-")]
@@ -57,11 +57,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for Numbers(place) in &arguments.at {
         check_place(place, &scene)?;
     }
-    let provider = match arguments.provider.as_deref() {
-        Some("biharmonic") => Some(Provider::Biharmonic),
-        Some("rbf") => Some(Provider::Rbf),
-        _ => None,
-    };
+    let asked = arguments.provider.as_deref();
+    let named = Provider::NAMED.into_iter().find(|(name, _)| Some(*name) == asked);
+    let provider = named.map(|(_, provider)| provider);
     let output = Output::open(&arguments.output)?;
     let file = scene.file.display().to_string();
     let scene = laid_out(scene).context(file)?;

@@ -4,7 +4,7 @@ use inbetween::input::{Drawing, Picture};
 use inbetween::math::{Point, point};
 use inbetween::mesh::PointLocator;
 use inbetween::outline::{ArcLength, Outline, Ring};
-use inbetween::pipeline::{Workbench, read_drawing_of};
+use inbetween::pipeline::{INTERIOR_DEPTH, Workbench, read_drawing_of};
 use inbetween::pose::LandmarkKind;
 use inbetween::render::Frame;
 use inbetween::render::diagram::Sections;
@@ -13,13 +13,10 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::http::{Request, Response};
-use super::pictures::{asked_layer, index, layer_scene, texture_of};
+use super::pictures::{asked_layer, index, layer_scene, pose_of, shape_of, texture_of};
 use super::problem::Refusal;
 use super::session::Session;
 
-/// A point that lies deeper inside than this, as a fraction of the pose's diagonal, is meant to be inside: as the pipeline
-/// has it.
-const INTERIOR_DEPTH: f64 = 0.01;
 /// Samples along the outlines that a request may ask for.
 const MOST_SAMPLES: usize = 4096;
 /// The longest side of a picture that is sent.
@@ -242,14 +239,10 @@ pub(super) fn carry(body: &[u8], session: &Session) -> Result<Response, Refusal>
     let asked: Carried = serde_json::from_slice(body).map_err(Refusal::bad)?;
     let shown = session.shown();
     let bench = shown.bench()?;
-    let shape = bench
-        .layers()
-        .get(asked.layer)
-        .ok_or_else(|| Refusal::bad("there is no such layer"))?;
+    let shape = shape_of(bench, asked.layer)?;
     let mapping = shape.mapping();
     let names = mapping.poses.names();
-    let own = names.iter().position(|name| *name == asked.pose);
-    let own = own.ok_or_else(|| Refusal::bad(format!("layer {} has no pose '{}'", asked.layer, asked.pose)))?;
+    let own = pose_of(shape, asked.layer, &asked.pose)?;
     let place = Point::from(asked.at);
     if !point::is_finite(place) {
         return Err(Refusal::bad("`at` is not finite"));

@@ -35,13 +35,9 @@ pub(super) fn asked_provider(request: &Request) -> Result<Option<Provider>, Refu
 }
 
 pub(super) fn provider_named(name: &str) -> Result<Provider, Refusal> {
-    match name {
-        "biharmonic" => Ok(Provider::Biharmonic),
-        "rbf" => Ok(Provider::Rbf),
-        other => Err(Refusal::bad(format!(
-            "provider '{other}' is neither biharmonic nor rbf"
-        ))),
-    }
+    let named = Provider::NAMED.into_iter().find(|(own, _)| *own == name);
+    let named = named.map(|(_, provider)| provider);
+    named.ok_or_else(|| Refusal::bad(format!("provider '{name}' is neither biharmonic nor rbf")))
 }
 
 fn sharpness(request: &Request) -> Result<Option<f64>, Refusal> {
@@ -55,17 +51,12 @@ fn sharpness(request: &Request) -> Result<Option<f64>, Refusal> {
 }
 
 fn stretch(request: &Request) -> Result<Option<Stretch>, Refusal> {
-    Ok(match request.value("stretch") {
-        None | Some("") => None,
-        Some("linear") => Some(Stretch::Linear),
-        Some("limited") => Some(Stretch::Limited),
-        Some("log") => Some(Stretch::Log),
-        Some(other) => {
-            return Err(Refusal::bad(format!(
-                "stretch '{other}' is none of linear, limited, log"
-            )));
-        }
-    })
+    let Some(name) = request.value("stretch").filter(|name| !name.is_empty()) else {
+        return Ok(None);
+    };
+    let named = Stretch::NAMED.into_iter().find(|(own, _)| *own == name);
+    let refusal = || Refusal::bad(format!("stretch '{name}' is none of linear, limited, log"));
+    named.map(|(_, stretch)| Some(stretch)).ok_or_else(refusal)
 }
 
 /// The weights of every place or list of weights of a request, in its order.
@@ -81,9 +72,7 @@ fn asked_weights(request: &Request, shown: &Shown) -> Result<Vec<Vec<f64>>, Refu
                     Some(known) => known,
                     None => known.insert(shown.provider(provider)?),
                 };
-                let mut weights = Vec::new();
-                provider.weights(&numbers(value)?, &mut weights).map_err(Refusal::bad)?;
-                all.push(weights);
+                all.push(provider.weights_at(&numbers(value)?).map_err(Refusal::bad)?);
             }
             "weights" => all.push(checked_weights(&numbers(value)?, &names).map_err(Refusal::bad)?),
             _ => {}

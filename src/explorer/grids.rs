@@ -79,8 +79,7 @@ pub(super) fn validity(request: &Request, session: &Session) -> Result<Response,
     let grid = grid(request, &shown, 32, MOST_FRAMES)?;
     let provider = shown.provider(asked_provider(request)?)?;
     let cell = |place: &[f64]| -> Result<(usize, [f64; 2]), Refusal> {
-        let mut weights = Vec::new();
-        provider.weights(place, &mut weights).map_err(Refusal::bad)?;
+        let weights = provider.weights_at(place).map_err(Refusal::bad)?;
         let posed = bench.posed(&weights, None)?;
         Ok((posed.flipped(), stretch(bench, &posed)))
     };

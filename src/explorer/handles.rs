@@ -2,9 +2,9 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use inbetween::math::{Point, restricted_weights};
+use inbetween::math::Point;
 use inbetween::mesh::PointLocator;
-use inbetween::pipeline::{ReachOptions, ShapePoint, reach, reach_near};
+use inbetween::pipeline::{LayerShape, ReachOptions, ShapePoint, reach, reach_near};
 use inbetween::pose::{DragOptions, HandleDeformation, HandleScratch};
 use inbetween::weights::{WeightError, WeightProvider};
 use serde::Deserialize;
@@ -12,6 +12,7 @@ use serde_json::json;
 
 use super::frames::{Words, is_inverted, provider_named};
 use super::http::Response;
+use super::pictures::{pose_of, shape_of};
 use super::problem::{Problem, Refusal};
 use super::session::Session;
 
@@ -57,13 +58,9 @@ pub(super) fn deform(body: &[u8], session: &Session) -> Result<Response, Refusal
     let asked: DeformRequest = serde_json::from_slice(body).map_err(Refusal::bad)?;
     let shown = session.shown();
     let bench = shown.bench()?;
-    let shape = bench
-        .layers()
-        .get(asked.layer)
-        .ok_or_else(|| Refusal::bad("there is no such layer"))?;
+    let shape = shape_of(bench, asked.layer)?;
     let poses = &shape.mapping().poses;
-    let pose = poses.names().iter().position(|name| *name == asked.pose);
-    let pose = pose.ok_or_else(|| Refusal::bad(format!("layer {} has no pose '{}'", asked.layer, asked.pose)))?;
+    let pose = pose_of(shape, asked.layer, &asked.pose)?;
     let from: Vec<[f64; 2]> = asked.handles.iter().map(|handle| handle.from).collect();
     let places: Vec<Point> = from.iter().copied().map(Point::from).collect();
     let targets: Vec<Point> = asked.handles.iter().map(|handle| Point::from(handle.to)).collect();
@@ -136,22 +133,17 @@ pub(super) fn reach_place(body: &[u8], session: &Session) -> Result<Response, Re
     let asked: ReachRequest = serde_json::from_slice(body).map_err(Refusal::bad)?;
     let shown = session.shown();
     let bench = shown.bench()?;
-    let shape = bench
-        .layers()
-        .get(asked.layer)
-        .ok_or_else(|| Refusal::bad("there is no such layer"))?;
+    let shape = shape_of(bench, asked.layer)?;
     let provider = shown.provider(asked.provider.as_deref().map(provider_named).transpose()?)?;
-    let mut weights = Vec::new();
-    provider.weights(&asked.at, &mut weights).map_err(Refusal::bad)?;
+    let weights = provider.weights_at(&asked.at).map_err(Refusal::bad)?;
     let posed = bench.posed(&weights, None)?;
     let positions = &posed.layers[asked.layer].positions;
     let of_layer = LayerWeights {
         whole: provider.as_ref(),
-        poses: shape.poses(),
+        shape,
     };
     // A layer that hangs on another is moved as a whole afterwards; where it was taken hold of, that is known.
-    let mut own = Vec::new();
-    of_layer.weights(&asked.at, &mut own).map_err(Refusal::bad)?;
+    let own = shape.own_weights(&weights);
     let mut unmoved = Vec::new();
     let blend = shape.blend();
     let blended = blend.blend(&own, &mut blend.scratch(), &mut unmoved);
@@ -184,7 +176,7 @@ pub(super) fn reach_place(body: &[u8], session: &Session) -> Result<Response, Re
             reach_near(&of_layer, blend, &places, &points, &targets, &options, start)
         }
     }?;
-    provider.weights(&found.at, &mut weights).map_err(Refusal::bad)?;
+    let weights = provider.weights_at(&found.at).map_err(Refusal::bad)?;
     let reached: Vec<[f64; 2]> = found.reached.iter().map(|p| (p + hung).into()).collect();
     Ok(Response::json(&json!({
         "at": found.at, "weights": weights, "reached": reached, "error": found.error, "evaluations": found.evaluations,
@@ -195,12 +187,12 @@ pub(super) fn reach_place(body: &[u8], session: &Session) -> Result<Response, Re
 #[derive(Debug)]
 struct LayerWeights<'a> {
     whole: &'a dyn WeightProvider,
-    poses: &'a [usize],
+    shape: &'a LayerShape,
 }
 
 impl WeightProvider for LayerWeights<'_> {
     fn pose_count(&self) -> usize {
-        self.poses.len()
+        self.shape.poses().len()
     }
 
     fn dimension(&self) -> usize {
@@ -208,13 +200,7 @@ impl WeightProvider for LayerWeights<'_> {
     }
 
     fn weights(&self, at: &[f64], weights: &mut Vec<f64>) -> Result<(), WeightError> {
-        self.whole.weights(at, weights)?;
-        if self.poses.len() < weights.len() {
-            let present: Vec<bool> = (0..weights.len()).map(|pose| self.poses.contains(&pose)).collect();
-            let shared = restricted_weights(weights, &present);
-            weights.clear();
-            weights.extend(self.poses.iter().map(|&pose| shared[pose]));
-        }
+        *weights = self.shape.own_weights(&self.whole.weights_at(at)?);
         Ok(())
     }
 }

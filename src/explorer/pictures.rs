@@ -2,7 +2,7 @@
 
 use inbetween::export::texture_png;
 use inbetween::math::Point;
-use inbetween::pipeline::Workbench;
+use inbetween::pipeline::{LayerShape, Workbench};
 use inbetween::render::{PuppetTexture, Texture};
 use inbetween::scene::{Facing, Scene};
 use serde_json::{Value, json};
@@ -35,13 +35,19 @@ pub(super) fn reflected(bench: &Workbench, layer: usize, pose: &str, place: Poin
 
 /// The texture of each pose of a layer.
 pub(super) fn texture_of(bench: &Workbench, layer: usize) -> Vec<usize> {
-    let scene = layer_scene(bench.scene(), layer);
-    let drawn = scene.drawn_poses();
-    let shown = |pose: usize| {
-        let root = scene.drawing_of(pose).map(|(root, _)| root);
-        drawn.iter().position(|&pose| Some(pose) == root).unwrap_or(0)
-    };
-    (0..scene.poses.len()).map(shown).collect()
+    layer_scene(bench.scene(), layer).shown_drawings()
+}
+
+/// The shape of the layer that the body of a request is about.
+pub(super) fn shape_of(bench: &Workbench, layer: usize) -> Result<&LayerShape, Refusal> {
+    let shape = bench.layers().get(layer);
+    shape.ok_or_else(|| Refusal::bad("there is no such layer"))
+}
+
+/// The pose of a layer, of this shape, that the body of a request is about.
+pub(super) fn pose_of(shape: &LayerShape, layer: usize, name: &str) -> Result<usize, Refusal> {
+    let found = shape.mapping().poses.index_of(name);
+    found.ok_or_else(|| Refusal::bad(format!("layer {layer} has no pose '{name}'")))
 }
 
 /// The layer that a request is about.

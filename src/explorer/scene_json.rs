@@ -73,7 +73,7 @@ fn of(scene: &Scene, bench: Option<&Workbench>) -> Value {
         "poses": (0..scene.poses.len()).map(|pose| pose_json(scene, bench, pose)).collect::<Vec<_>>(),
         "pseudo_poses": scene.pseudo_poses.iter().map(|p| json!({"from": p.from, "at": p.at})).collect::<Vec<_>>(),
         "pose_space": {
-            "provider": match settings.provider { Provider::Biharmonic => "biharmonic", Provider::Rbf => "rbf" },
+            "provider": name_of(&Provider::NAMED, &settings.provider),
             "radial": match settings.radial { Radial::BSpline => "b-spline", Radial::ThinPlate => "thin-plate" },
             "epsilon": settings.epsilon,
             "bounded": settings.range == WeightRange::Unit,
@@ -84,11 +84,7 @@ fn of(scene: &Scene, bench: Option<&Workbench>) -> Value {
                 Reference::Canonical => "canonical",
                 Reference::Pose(pose) => scene.poses.get(pose).map_or("canonical", |pose| &pose.name),
             },
-            "stretch": match scene.blend.stretch {
-                Stretch::Linear => "linear",
-                Stretch::Limited => "limited",
-                Stretch::Log => "log",
-            },
+            "stretch": name_of(&Stretch::NAMED, &scene.blend.stretch),
             "guard": match scene.blend.guard { FrameGuard::Off => "off", FrameGuard::Repair => "repair" },
         },
         "texture": {
@@ -153,6 +149,11 @@ fn pose_json(scene: &Scene, bench: Option<&Workbench>, index: usize) -> Value {
         "drawing": scene.originals()[index], "deform_of": deform_of, "handles": handles,
         "mirror": mirror, "turns": pose.turns, "layers": layers,
     })
+}
+
+/// What a choice is called.
+fn name_of<T: PartialEq>(named: &[(&'static str, T)], choice: &T) -> Option<&'static str> {
+    named.iter().find(|(_, own)| own == choice).map(|(name, _)| *name)
 }
 
 fn layers(scene: &Scene) -> Vec<Value> {

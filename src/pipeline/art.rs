@@ -38,7 +38,7 @@ impl LayerArt {
         notes: &mut Vec<String>,
     ) -> Result<Self, PipelineError> {
         let drawn_on = part.scene.drawn_poses();
-        let drawing_of = drawing_of_poses(part.scene);
+        let drawing_of = part.scene.shown_drawings();
         let (mapping, silhouette) = (shape.mapping(), shape.silhouette.clone());
         let blending = match part.scene.colour_blend {
             scene::ColourBlend::Plain => ColourBlend::Plain,
@@ -116,11 +116,4 @@ fn curves(scene: &Scene, drawings: &mut [Drawing], drawn_on: &[usize]) -> Option
         Some(PoseArt { art, drawn_on })
     };
     drawings.iter_mut().zip(drawn_on).map(take).collect()
-}
-
-/// The drawing that each pose shows, by its place among those that are drawn.
-fn drawing_of_poses(scene: &Scene) -> Vec<usize> {
-    let drawn = scene.drawn_poses();
-    let drawing = |original: usize| drawn.iter().position(|&pose| pose == original).unwrap_or(0);
-    scene.originals().into_iter().map(drawing).collect()
 }

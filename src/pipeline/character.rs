@@ -111,11 +111,7 @@ impl Character {
     /// # Errors
     /// [`PipelineError`] if the place has the wrong dimension or is not finite.
     pub fn posed_at(&self, place: &[f64]) -> Result<Posed, PipelineError> {
-        let mut weights = Vec::new();
-        self.weights
-            .weights(place, &mut weights)
-            .map_err(PipelineError::Weights)?;
-        self.posed_of(&weights)
+        self.posed_of(&self.weights.weights_at(place).map_err(PipelineError::Weights)?)
     }
 
     /// The character for given weights, one a pose of the scene.

@@ -23,7 +23,7 @@ const LANDMARK_REACH: f64 = 0.03;
 
 /// A landmark that in every pose lies inside the shape by more than this, as a fraction of the diagonal, is an interior
 /// one: about the width of an ink line.
-const INTERIOR_DEPTH: f64 = 0.01;
+pub const INTERIOR_DEPTH: f64 = 0.01;
 
 /// Ends of lines nearer than this to an outline landmark in every pose, in perimeters, are that landmark.
 const SAME_PLACE: f64 = 2e-3;

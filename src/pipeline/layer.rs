@@ -233,8 +233,9 @@ impl LayerShape {
         &self.blend
     }
 
-    /// The weights of its own poses where the scene's count with `weights`.
-    fn own_weights(&self, weights: &[f64]) -> Vec<f64> {
+    /// The weights of its own poses where the scene's count with `weights`, which sum to 1.
+    #[must_use]
+    pub fn own_weights(&self, weights: &[f64]) -> Vec<f64> {
         let is_present: Vec<bool> = (0..weights.len()).map(|pose| self.poses.contains(&pose)).collect();
         let shared = restricted_weights(weights, &is_present);
         self.poses

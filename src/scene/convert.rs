@@ -292,7 +292,7 @@ impl Reader<'_> {
         let provider = self.choice(
             &table.provider,
             "[pose_space] provider",
-            &[("biharmonic", Provider::Biharmonic), ("rbf", Provider::Rbf)],
+            &Provider::NAMED,
             "'biharmonic' or 'rbf'",
         )?;
         let bounded = table.bounded.as_ref().filter(|bounded| *bounded.get_ref());

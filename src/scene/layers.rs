@@ -46,6 +46,14 @@ impl Scene {
         (0..self.poses.len()).map(original).collect()
     }
 
+    /// For each pose of a scene without layers the drawing that it shows, by its place among [`Scene::drawn_poses`].
+    #[must_use]
+    pub fn shown_drawings(&self) -> Vec<usize> {
+        let drawn = self.drawn_poses();
+        let drawing = |original: usize| drawn.iter().position(|&pose| pose == original).unwrap_or(0);
+        self.originals().into_iter().map(drawing).collect()
+    }
+
     /// The layer of this name.
     #[must_use]
     pub fn layer(&self, name: &str) -> Option<&SceneLayer> {

@@ -134,6 +134,11 @@ pub enum Provider {
     Rbf,
 }
 
+impl Provider {
+    /// What each is called in scene files and on the command line.
+    pub const NAMED: [(&'static str, Self); 2] = [("biharmonic", Self::Biharmonic), ("rbf", Self::Rbf)];
+}
+
 /// Which radial function the cardinal basis uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Radial {

@@ -104,8 +104,7 @@ impl Shape {
     /// [`ShapeError::Weights`] if the place has the wrong number of values or is not finite, [`ShapeError::Form`] if the
     /// blend is not.
     pub fn form_at(&self, at: &[f64]) -> Result<Form, ShapeError> {
-        let mut weights = Vec::new();
-        self.weights.weights(at, &mut weights)?;
+        let weights = self.weights.weights_at(at)?;
         let mut positions = vec![Point3::zeros(); self.topology.vertex_count()];
         self.blend(&weights, &mut positions)?;
         let form = Form::new(&self.topology, positions);

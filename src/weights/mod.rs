@@ -49,6 +49,16 @@ pub trait WeightProvider: std::fmt::Debug + Send + Sync {
     /// [`WeightError::WrongDimension`] or [`WeightError::NotFinite`].
     fn weights(&self, at: &[f64], weights: &mut Vec<f64>) -> Result<(), WeightError>;
 
+    /// The same as a list of their own.
+    ///
+    /// # Errors
+    /// As [`Self::weights`].
+    fn weights_at(&self, at: &[f64]) -> Result<Vec<f64>, WeightError> {
+        let mut weights = Vec::new();
+        self.weights(at, &mut weights)?;
+        Ok(weights)
+    }
+
     /// The weights at many places: #points x #dimensions coordinates in, #points x #poses weights out, the same as one by
     /// one; `weights` is overwritten.
     ///

@@ -55,10 +55,7 @@ impl Character {
     }
 
     fn weights_at(&self, place: &[f64]) -> Result<Vec<f32>, PipelineError> {
-        let mut weights = Vec::new();
-        self.weights
-            .weights(place, &mut weights)
-            .map_err(PipelineError::Weights)?;
+        let weights = self.weights.weights_at(place).map_err(PipelineError::Weights)?;
         Ok(weights.into_iter().map(|weight| weight as f32).collect())
     }
 

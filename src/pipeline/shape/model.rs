@@ -131,9 +131,7 @@ impl ShapeModel {
     /// # Errors
     /// [`ShapeModelError`] if the place has the wrong number of values or is not finite.
     pub fn weights_at(&self, place: &[f64]) -> Result<Vec<f64>, ShapeModelError> {
-        let mut weights = Vec::new();
-        self.shape.weights().weights(place, &mut weights)?;
-        Ok(weights)
+        Ok(self.shape.weights().weights_at(place)?)
     }
 
     /// The texture at a place of the textures; `None` without textures.

@@ -36,9 +36,7 @@ impl ShapeSpace {
     /// # Errors
     /// [`ShapeModelError`] if the place has the wrong number of values or is not finite.
     pub fn weights_at(&self, place: &[f64]) -> Result<Vec<f64>, ShapeModelError> {
-        let mut weights = Vec::new();
-        self.geometry.weights(place, &mut weights)?;
-        Ok(weights)
+        Ok(self.geometry.weights_at(place)?)
     }
 
     /// The weights of the textures at a place, one an example, 0 for those without one; none where no example has one.
@@ -49,8 +47,7 @@ impl ShapeSpace {
         let Some(textures) = &self.textures else {
             return Ok(Vec::new());
         };
-        let mut own = Vec::new();
-        textures.weights.weights(place, &mut own)?;
+        let own = textures.weights.weights_at(place)?;
         let mut weights = vec![0.0; self.geometry.pose_count()];
         for (&example, weight) in textures.examples.iter().zip(own) {
             weights[example] = weight;

@@ -26,8 +26,6 @@ impl Textures {
 
     /// The picture at a place of the textures.
     pub(super) fn at(&self, place: &[f64]) -> Result<Frame, ShapeModelError> {
-        let mut weights = Vec::new();
-        self.space.weights.weights(place, &mut weights)?;
-        Ok(self.pictures.blend(&weights)?)
+        Ok(self.pictures.blend(&self.space.weights.weights_at(place)?)?)
     }
 }

@@ -35,11 +35,7 @@ impl Reader<'_> {
             stretch: self.choice(
                 &table.stretch,
                 "[blend] stretch",
-                &[
-                    ("linear", Stretch::Linear),
-                    ("limited", Stretch::Limited),
-                    ("log", Stretch::Log),
-                ],
+                &Stretch::NAMED,
                 "'linear', 'limited' or 'log'",
             )?,
             guard: self.choice(
