@@ -4,19 +4,20 @@
 //! A bridge leads from a visit of the walk around the region to a visit of an island; see [`super::free_space`] for
 //! these words. Islands are joined one after another, each time
 //! 1. by the segment that is inside every pose and the shortest relative to the pose's size, in the pose where it is
-//!    longest; where no such segment is left,
+//!    longest ([`super::in_sight`]); where no such segment is left,
 //! 2. by a path over Steiner points, as many in every pose: the one with the fewest of them, and of these the shortest
 //!    ([`super::bridge_path`]).
 //!
 //! The walk then runs along the bridge to the island, once around it, and back. There is always a bridge: free space is
 //! connected in every pose, and the paths of different poses need nothing in common but their ends and their length.
 //! The paper has neither holes nor landmarks.
-//! Cost O(m^2) for each island, m the number of vertices.
+//! Cost O(m^2), m the number of vertices, and as much again for each island that needs Steiner points.
 
 use rayon::prelude::*;
 
 use super::bridge_path;
 use super::free_space::{FreeSpace, Visits};
+use super::in_sight::InSight;
 use crate::math::{Point, point};
 
 /// The walk around everything, and how many Steiner points were added.
@@ -55,35 +56,15 @@ pub(super) fn join_islands(
     let mut steiner = 0;
     while !islands.is_empty() {
         let visits = Visits::new(std::iter::once(&walk).chain(&islands));
-        let spaces: Vec<FreeSpace> = positions
-            .par_iter()
-            .enumerate()
-            .map(|(pose, points)| {
-                FreeSpace::new(points, &visits).ok_or(Narrow {
-                    pose,
-                    place: points[islands[0][0]],
-                })
-            })
-            .collect::<Vec<Result<_, _>>>()
-            .into_iter()
-            .collect::<Result<_, _>>()?;
+        let spaces = free_spaces(positions, &visits)?;
         let sights = Sights::new(&spaces, &visits);
-        let length = |from: usize, to: usize| {
-            let (a, b) = (visits.vertex[from], visits.vertex[to]);
-            positions
-                .iter()
-                .zip(&diagonals)
-                .map(|(p, diagonal)| (p[b] - p[a]).norm() / diagonal)
-                .fold(0.0, f64::max)
-        };
-        let bridge = match sights.shortest_common(&length) {
-            Some((from, to)) => Bridge {
-                from,
-                to,
-                interior: vec![Vec::new(); positions.len()],
-            },
-            None => bridge_path::fewest_bends(positions, &diagonals, &visits, &spaces, &sights, &length)?,
-        };
+        let in_sight = InSight::join(positions, &diagonals, visits, &sights);
+        if !in_sight.is_empty() {
+            (walk, islands) = in_sight.walks();
+            continue;
+        }
+        let visits = in_sight.visits;
+        let bridge = bridge_path::fewest_bends(positions, &diagonals, &visits, &spaces, &sights)?;
         let mut points: Vec<usize> = Vec::new();
         for k in 0..bridge.interior[0].len() {
             points.push(positions[0].len());
@@ -106,58 +87,58 @@ pub(super) fn join_islands(
     Ok(Joined { walk, steiner })
 }
 
-/// Which visits of the walk each visit of an island sees, in every pose.
+/// The free space of every pose.
+pub(super) fn free_spaces(positions: &[Vec<Point>], visits: &Visits) -> Result<Vec<FreeSpace>, Narrow> {
+    let spaces: Vec<Option<FreeSpace>> = (positions.par_iter())
+        .map(|points| FreeSpace::new(points, visits))
+        .collect();
+    let narrow = |pose: usize| Narrow {
+        pose,
+        place: positions[pose][visits.vertex[visits.starts[1]]],
+    };
+    let spaces = spaces.into_iter().enumerate();
+    spaces.map(|(pose, space)| space.ok_or_else(|| narrow(pose))).collect()
+}
+
+/// How long a segment between two vertices is relative to the pose's size, in the pose where it is longest.
+pub(super) fn relative_length(positions: &[Vec<Point>], diagonals: &[f64], [a, b]: [usize; 2]) -> f64 {
+    positions
+        .iter()
+        .zip(diagonals)
+        .map(|(p, diagonal)| (p[b] - p[a]).norm() / diagonal)
+        .fold(0.0, f64::max)
+}
+
+/// Which visits each visit of an island sees.
 #[derive(Debug)]
 pub(super) struct Sights {
     /// How many visits the walk has: they are the first.
     walk: usize,
-    /// #poses x #visits of islands, the visits of the walk it sees, in order.
+    /// #poses x #visits of islands, the visits it sees, in order.
     seen: Vec<Vec<Vec<usize>>>,
 }
 
 impl Sights {
-    fn new(spaces: &[FreeSpace], visits: &Visits) -> Self {
+    pub(super) fn new(spaces: &[FreeSpace], visits: &Visits) -> Self {
         let (walk, count) = (visits.starts[1], visits.vertex.len());
-        let seen_from = |space: &FreeSpace, visit: usize| {
-            let mut seen = space.seen_from(visit);
-            seen.retain(|&other| other < walk);
-            seen
-        };
         Self {
             walk,
             seen: spaces
                 .par_iter()
-                .map(|space| (walk..count).map(|visit| seen_from(space, visit)).collect())
+                .map(|space| (walk..count).map(|visit| space.seen_from(visit)).collect())
                 .collect(),
         }
     }
 
-    /// Whether a visit of the walk and one of an island see one another in a pose.
+    /// Whether a visit and one of an island see one another in a pose.
     pub(super) fn sees(&self, pose: usize, from: usize, to: usize) -> bool {
         self.seen[pose][to - self.walk].binary_search(&from).is_ok()
     }
 
-    /// The pair that sees one another in every pose and has the least `length`.
-    fn shortest_common(&self, length: &dyn Fn(usize, usize) -> f64) -> Option<(usize, usize)> {
-        let mut best: Option<(f64, usize, usize)> = None;
-        for (island_visit, seen) in self.seen[0].iter().enumerate() {
-            let to = self.walk + island_visit;
-            for &from in seen {
-                if (1..self.seen.len()).all(|pose| self.sees(pose, from, to)) {
-                    let found = (length(from, to), from, to);
-                    if best.is_none_or(|best| {
-                        found
-                            .0
-                            .total_cmp(&best.0)
-                            .then((from, to).cmp(&(best.1, best.2)))
-                            .is_lt()
-                    }) {
-                        best = Some(found);
-                    }
-                }
-            }
-        }
-        best.map(|(_, from, to)| (from, to))
+    /// The visits that a visit of an island sees in every pose.
+    pub(super) fn common(&self, to: usize) -> impl Iterator<Item = usize> {
+        let seen = self.seen[0][to - self.walk].iter().copied();
+        seen.filter(move |&from| (1..self.seen.len()).all(|pose| self.sees(pose, from, to)))
     }
 }
 

@@ -11,7 +11,7 @@
 //! The number of points is an upper bound: paths over the middles of edges are not the ones with the fewest links.
 //! The decimation takes out what was not needed. Cost O(m^2) a pose.
 
-use super::bridge::{Bridge, Narrow, Sights};
+use super::bridge::{Bridge, Narrow, Sights, relative_length};
 use super::free_space::{FreeSpace, Visits};
 use crate::math::{Point, predicate};
 
@@ -32,9 +32,10 @@ pub(super) fn fewest_bends(
     visits: &Visits,
     spaces: &[FreeSpace],
     sights: &Sights,
-    length: &dyn Fn(usize, usize) -> f64,
 ) -> Result<Bridge, Narrow> {
-    let pairs = rated_pairs(visits, spaces, sights, length);
+    let length =
+        |from: usize, to: usize| relative_length(positions, diagonals, [visits.vertex[from], visits.vertex[to]]);
+    let pairs = rated_pairs(visits, spaces, sights, &length);
     let mut narrow = Narrow {
         pose: 0,
         place: positions[0][visits.vertex[visits.starts[1]]],

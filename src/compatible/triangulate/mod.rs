@@ -36,6 +36,7 @@ mod ear_clipping;
 mod features;
 mod free_space;
 mod halving_path;
+mod in_sight;
 mod line_of_sight;
 mod link_path;
 mod patch;
