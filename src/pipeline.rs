@@ -12,6 +12,7 @@
 
 mod art;
 mod blending;
+mod boundaries;
 mod character;
 mod deformed;
 mod drawings;

@@ -42,17 +42,26 @@ pub fn barycentric_gradients(triangle: [Point; 3]) -> Option<[Point; 3]> {
 /// The interior angle at each corner, in radians, in `[0, pi]`.
 #[must_use]
 pub fn angles_rad([a, b, c]: [Point; 3]) -> [f64; 3] {
-    let at = |p: Point, q: Point, r: Point| {
-        let (u, v) = (q - p, r - p);
-        point::cross(u, v).abs().atan2(u.dot(&v))
-    };
-    [at(a, b, c), at(b, c, a), at(c, a, b)]
+    [angle_rad(a, b, c), angle_rad(b, c, a), angle_rad(c, a, b)]
 }
 
-/// The smallest interior angle, in radians.
+/// The angle at `p` of the triangle `p q r`.
+fn angle_rad(p: Point, q: Point, r: Point) -> f64 {
+    let (u, v) = (q - p, r - p);
+    point::cross(u, v).abs().atan2(u.dot(&v))
+}
+
+/// The smallest interior angle, in radians: the one opposite to the shortest edge.
 #[must_use]
-pub fn smallest_angle_rad(triangle: [Point; 3]) -> f64 {
-    angles_rad(triangle).into_iter().fold(f64::INFINITY, f64::min)
+pub fn smallest_angle_rad([a, b, c]: [Point; 3]) -> f64 {
+    let (ab, bc, ca) = ((b - a).norm_squared(), (c - b).norm_squared(), (a - c).norm_squared());
+    if bc <= ca && bc <= ab {
+        angle_rad(a, b, c)
+    } else if ca <= ab {
+        angle_rad(b, c, a)
+    } else {
+        angle_rad(c, a, b)
+    }
 }
 
 /// A triangle's smallest interior angle over several embeddings, in radians.

@@ -14,6 +14,9 @@ pub struct Located {
     pub barycentric: [f64; 3],
 }
 
+/// Rounding of the three cross products: a point on an edge belongs to the mesh.
+const EDGE_TOLERANCE: f64 = 1e-12;
+
 type Entry = GeomWithData<Rectangle<[f64; 2]>, usize>;
 
 /// Finds the triangle at a point. Built in O(n log n), queried in about O(log n).
@@ -51,8 +54,6 @@ impl PointLocator {
             .locate_in_envelope_intersecting(AABB::from_point([p.x, p.y]))
             .filter_map(|entry| {
                 let barycentric = geometry::barycentric(self.triangles[entry.data], p)?;
-                // Rounding of the three cross products: a point on an edge belongs to the mesh.
-                const EDGE_TOLERANCE: f64 = 1e-12;
                 barycentric.iter().all(|&b| b >= -EDGE_TOLERANCE).then(|| Located {
                     triangle: entry.data,
                     barycentric: clamped(barycentric),
@@ -90,14 +91,38 @@ impl PointLocator {
         best.map(|(_, located)| located)
     }
 
+    /// As [`Self::bind`] for each of `places`; quick where one is near to the one before.
+    #[must_use]
+    pub fn bind_along(&self, places: impl IntoIterator<Item = Point>) -> Option<Vec<MeshPoint>> {
+        let mut last = 0;
+        let bound = |p: Point| {
+            let here = geometry::barycentric(*self.triangles.get(last)?, p);
+            // Inside for sure: on an edge the smallest index counts.
+            let inside = here.filter(|barycentric| barycentric.iter().all(|&b| b > 2.0 * EDGE_TOLERANCE));
+            let located = match inside {
+                Some(barycentric) => Located {
+                    triangle: last,
+                    barycentric: clamped(barycentric),
+                },
+                None => self.nearest(p)?,
+            };
+            last = located.triangle;
+            Some(self.bound(located))
+        };
+        places.into_iter().map(bound).collect()
+    }
+
+    fn bound(&self, located: Located) -> MeshPoint {
+        MeshPoint {
+            vertices: self.vertices[located.triangle],
+            shares: located.barycentric,
+        }
+    }
+
     /// The point of the mesh nearest to `p`, carried by its triangle. `None` only for a mesh without triangles.
     #[must_use]
     pub fn bind(&self, p: Point) -> Option<MeshPoint> {
-        let Located { triangle, barycentric } = self.nearest(p)?;
-        Some(MeshPoint {
-            vertices: self.vertices[triangle],
-            shares: barycentric,
-        })
+        self.nearest(p).map(|located| self.bound(located))
     }
 }
 
@@ -127,5 +152,8 @@ mod tests {
             ([0, 1, 2], Point::new(1.0, 0.5))
         );
         assert_eq!(bound.at(&positions.map(|p| p * 2.0)), Point::new(2.0, 1.0));
+        let along: Vec<Point> = (0..40).map(|k| Point::new(0.05 * f64::from(k), 0.5)).collect();
+        let each: Option<Vec<MeshPoint>> = along.iter().map(|&p| locator.bind(p)).collect();
+        assert_eq!(locator.bind_along(along), each);
     }
 }

@@ -5,8 +5,8 @@ use crate::math::{Point, point};
 
 /// The arc-length parameter of a ring: 0 at its first point, growing along it, 1 back at the first point.
 ///
-/// Cost: built in O(#points), each query O(1) where points are spread evenly, but for [`ArcLength::nearest`], which is
-/// O(#points).
+/// Cost: built in O(#points), each query O(1) where points are spread evenly, but for [`ArcLength::nearest`], which looks
+/// at every edge that the way from the others does not rule out.
 #[derive(Debug, Clone)]
 pub struct ArcLength {
     points: Vec<Point>,
@@ -16,6 +16,9 @@ pub struct ArcLength {
     guide: Vec<usize>,
     perimeter: f64,
 }
+
+/// Of so many points one is looked at before a search for the nearest.
+const SCOUTED: usize = 32;
 
 impl ArcLength {
     /// Measures `ring`.
@@ -94,16 +97,39 @@ impl ArcLength {
     /// The parameter, in `[0, 1)`, of the point of the ring nearest to `p`, and its distance.
     #[must_use]
     pub fn nearest(&self, p: Point) -> (f64, f64) {
+        let count = self.points.len();
+        // Known before the walk, so that it passes far parts quickly from the beginning.
+        let scouted = self.points.iter().step_by(SCOUTED).map(|q| (p - q).norm_squared());
+        let within = scouted.fold(f64::INFINITY, f64::min).sqrt();
         let mut best = (0.0, f64::INFINITY);
-        for edge in 0..self.points.len() {
-            let (a, b) = (self.points[edge], self.points[(edge + 1) % self.points.len()]);
+        let mut edge = 0;
+        while edge < count {
+            let (a, b) = (self.points[edge], self.points[(edge + 1) % count]);
             let (along, distance) = point::nearest_on_segment(p, a, b);
+            let on_edge = self.parameters[edge] + along * (self.parameters[edge + 1] - self.parameters[edge]);
             if distance < best.1 {
-                let t = self.parameters[edge] + along * (self.parameters[edge + 1] - self.parameters[edge]);
-                best = (t.rem_euclid(1.0), distance);
+                best = (on_edge.rem_euclid(1.0), distance);
             }
+            edge = self.passed(edge, on_edge + (distance - best.1.min(within)) / self.perimeter);
         }
         best
+    }
+
+    /// The first edge after `edge` that ends beyond parameter `t`, or a little before: rounding must not pass what is as
+    /// near. For one who walks along the ring, the distance to a place changes by no more than the way.
+    fn passed(&self, edge: usize, t: f64) -> usize {
+        const ROUNDING: f64 = 1e-9;
+        let (count, t) = (self.points.len(), t - ROUNDING);
+        let next = edge + 1;
+        if next >= count || t <= self.parameters[next + 1] {
+            return next;
+        }
+        if t >= 1.0 {
+            return count;
+        }
+        let guided = self.guide[((t * count as f64) as usize).min(count - 1)];
+        // The guide is at or before the edge that holds `t`, but for rounding.
+        guided.saturating_sub(1).max(next)
     }
 }
 
@@ -117,6 +143,8 @@ pub fn parameter_gap(a: f64, b: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outline::testing::rings;
+    use proptest::prelude::*;
 
     #[test]
     fn parameters_follow_the_edges() {
@@ -128,5 +156,20 @@ mod tests {
         assert_eq!(arc.at(1.25), arc.at(0.25));
         assert_eq!(arc.at(0.375), Point::new(3.0, 0.0));
         assert_eq!(arc.nearest(Point::new(2.0, -5.0)), (0.25, 5.0));
+    }
+
+    proptest! {
+        #[test]
+        fn the_nearest_place_is_that_of_looking_at_every_edge(
+            points in rings(3..60), x in -0.5..1.5f64, y in -0.5..1.5f64,
+        ) {
+            let arc = ArcLength::new(&Ring::new(points).expect("a ring"));
+            let p = Point::new(x, y);
+            let (t, distance) = arc.nearest(p);
+            let edges = (0..arc.points.len()).map(|k| (arc.points[k], arc.points[(k + 1) % arc.points.len()]));
+            let least = edges.map(|(a, b)| point::nearest_on_segment(p, a, b).1).fold(f64::INFINITY, f64::min);
+            prop_assert_eq!(distance, least);
+            prop_assert!(((arc.at(t) - p).norm() - least).abs() < 1e-9);
+        }
     }
 }

@@ -8,6 +8,8 @@
 //! Handles are given in the coordinates of the drawing as it is in its file, and are reflected with it where the pose that
 //! it belongs to says `mirror = true`.
 
+use rayon::prelude::*;
+
 use super::landmarks::as_used;
 use super::{MappingReport, PipelineError};
 use crate::input::Drawing;
@@ -19,7 +21,7 @@ use crate::outline::{Outline, OutlineError};
 use crate::pose::{
     CarriedOutline, DragReport, HandleDeformation, HandleError, Mapping, Matching, MeshQuality, PoseSet,
 };
-use crate::scene::{DeformedCopy, HandleMove, PoseSource, Scene};
+use crate::scene::{DeformedCopy, HandleMove, PoseSource, Scene, ScenePose};
 
 /// How a deformed copy came about.
 #[derive(Debug, Clone)]
@@ -68,19 +70,17 @@ pub(super) fn with_copies(
     }
     // Copies of copies need a round each; a validated scene has no circle.
     for _ in 0..names.len() {
-        for (pose, said) in scene.poses.iter().enumerate() {
-            let PoseSource::Deformed(copy) = &said.source else {
-                continue;
-            };
-            let (None, Some(base)) = (&poses[pose], &poses[copy.of]) else {
-                continue;
-            };
-            let (deformed, drag) = deformed(scene, drawings, &drawn, pose, copy, base)?;
-            report.deformed.push(DeformedPose {
-                pose,
-                of: copy.of,
-                drag,
-            });
+        let ready = |(pose, said): (usize, &ScenePose)| match &said.source {
+            PoseSource::Deformed(copy) if poses[pose].is_none() => Some((pose, copy.clone(), poses[copy.of].as_ref()?)),
+            _ => None,
+        };
+        let round: Vec<_> = scene.poses.iter().enumerate().filter_map(ready).collect();
+        let made: Vec<_> = (round.into_par_iter())
+            .map(|(pose, copy, base)| (pose, copy.of, deformed(scene, drawings, &drawn, pose, &copy, base)))
+            .collect();
+        for (pose, of, made) in made {
+            let (deformed, drag) = made?;
+            report.deformed.push(DeformedPose { pose, of, drag });
             poses[pose] = Some(deformed);
         }
     }

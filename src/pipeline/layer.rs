@@ -86,13 +86,17 @@ impl Part<'_> {
     /// The layer's shape, not yet hung on another one.
     pub(super) fn shape(&self, mapping: Mapping, notes: &mut Vec<String>) -> Result<LayerShape, PipelineError> {
         let options = blend_options(self.scene, &mapping);
-        let blend = RigidBlend::new(&mapping.poses, &options).map_err(|error| self.refusal(error.into()))?;
+        let (blend, silhouette) = rayon::join(
+            || RigidBlend::new(&mapping.poses, &options),
+            || Silhouette::new(&mapping),
+        );
+        let blend = blend.map_err(|error| self.refusal(error.into()))?;
         self.note_turns(&blend, notes);
         Ok(LayerShape {
             name: self.name.clone(),
             poses: self.poses.clone(),
             originals: self.scene.originals(),
-            silhouette: Silhouette::new(&mapping),
+            silhouette,
             mapping,
             options,
             blend,

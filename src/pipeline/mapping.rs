@@ -2,17 +2,16 @@
 
 use std::sync::Arc;
 
+use super::boundaries::Boundaries;
 use super::landmarks::{self, Landmarks};
 use super::triangulation::{self, Labels, LandmarkLabel};
 use super::{MappingReport, PipelineError, Stage, deformed};
 use crate::compatible::{
-    CompatibleMesh, Effort, RefineOptions, Simplification, Simplified, SimplifyError, SimplifyOptions,
-    TriangulateReport, refine, triangulate_features,
+    CompatibleMesh, Effort, RefineOptions, Simplification, Simplified, TriangulateReport, refine, triangulate_features,
 };
 use crate::input::Drawing;
-use crate::matching::{Correspondence, Landmark, MatchError, MatchOptions, MatchReport, MirrorHints, match_rings};
 use crate::math::Point;
-use crate::outline::{ArcLength, Outline, Ring};
+use crate::outline::{ArcLength, Outline};
 use crate::pose::{Mapping, Matching, MeshQuality, PoseSet};
 use crate::scene::Scene;
 
@@ -72,69 +71,6 @@ pub(super) fn map_drawings_again(
     Ok((mapping, report, boundaries))
 }
 
-/// The outlines matched and simplified, and what that was made of besides the drawings.
-#[derive(Debug)]
-pub(super) struct Boundaries {
-    on_outline: Vec<Landmark>,
-    reference: Option<usize>,
-    tolerance: f64,
-    /// Holes in one order.
-    outlines: Vec<Outline>,
-    matched: Matched,
-    /// The places of the landmarks, #landmarks x #poses.
-    pinned: Vec<Vec<f64>>,
-    simplified: Simplified,
-}
-
-impl Boundaries {
-    fn new(
-        scene: &Scene,
-        drawings: &[Drawing],
-        on_outline: &[Landmark],
-        begins: &mut dyn FnMut(Stage),
-    ) -> Result<Self, PipelineError> {
-        begins(Stage::Matching);
-        let mut outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
-        let matched = match_outlines(scene, &mut outlines, on_outline)?;
-        begins(Stage::Simplification);
-        let pinned: Vec<Vec<f64>> = on_outline
-            .iter()
-            .filter_map(|landmark| everywhere(landmark, &matched.correspondences[0]))
-            .collect();
-        let simplified = simplification(&outlines, &matched, &pinned, scene.mesh.simplify, &scene.names())?.1;
-        Ok(Self {
-            on_outline: on_outline.to_vec(),
-            reference: scene.reference,
-            tolerance: scene.mesh.simplify,
-            outlines,
-            matched,
-            pinned,
-            simplified,
-        })
-    }
-
-    /// Whether they are those of this scene, too, whose drawings are the same.
-    fn serve(&self, scene: &Scene, on_outline: &[Landmark]) -> bool {
-        self.on_outline == on_outline && self.reference == scene.reference && self.tolerance == scene.mesh.simplify
-    }
-}
-
-/// The simplification, to be varied, and what it gives.
-fn simplification<'a>(
-    outlines: &'a [Outline],
-    matched: &Matched,
-    pinned: &[Vec<f64>],
-    tolerance: f64,
-    names: &[String],
-) -> Result<(Simplification<'a>, Simplified), PipelineError> {
-    let options = SimplifyOptions::default().with_tolerance(tolerance);
-    let refusal = |error| simplify_refusal(names, error);
-    let mut simplification =
-        Simplification::new(outlines, &matched.correspondences, pinned, &options).map_err(refusal)?;
-    let simplified = simplification.polygons().map_err(refusal)?;
-    Ok((simplification, simplified))
-}
-
 /// Maps a scene without copies.
 fn map_drawn(
     scene: &Scene,
@@ -151,8 +87,11 @@ fn map_drawn(
     let landmarks = landmarks::sorted(scene, drawings)?;
 
     let boundaries = match before.filter(|before| before.serve(scene, &landmarks.on_outline)) {
-        Some(before) => Arc::clone(before),
-        None => Arc::new(Boundaries::new(scene, drawings, &landmarks.on_outline, begins)?),
+        Some(same) => Arc::clone(same),
+        None => {
+            let before = before.map(Arc::as_ref);
+            Arc::new(Boundaries::new(scene, drawings, &landmarks.on_outline, before, begins)?)
+        }
     };
     let Boundaries {
         outlines,
@@ -180,8 +119,7 @@ fn map_drawn(
     let mut bare = triangulated(&simplified.polygons, Effort::Full)?;
     let mut first = None;
     let varied = if bare.mesh.steiner > 0 {
-        let (mut again, _) = simplification(outlines, matched, pinned, scene.mesh.simplify, &names)?;
-        sparser(&mut again, &bare, &triangulated)
+        sparser(boundaries.simplification.clone(), &bare, &triangulated)
     } else {
         None
     };
@@ -234,7 +172,7 @@ fn map_drawn(
 
 /// The best of some variations of the simplification by their sketched triangulations, if any beats the first.
 fn sparser(
-    simplification: &mut Simplification,
+    mut simplification: Simplification,
     first: &Bare,
     triangulated: &impl Fn(&[Outline], Effort) -> Result<Bare, PipelineError>,
 ) -> Option<Simplified> {
@@ -255,44 +193,6 @@ fn sparser(
         }
     }
     best.map(|(_, varied)| varied)
-}
-
-/// All rings, matched.
-#[derive(Debug)]
-struct Matched {
-    reference: usize,
-    /// Outer ring first.
-    correspondences: Vec<Correspondence>,
-    outer: MatchReport,
-    holes: Vec<MatchReport>,
-}
-
-/// Matches the outer rings, puts the holes of all poses in one order, and matches them.
-fn match_outlines(scene: &Scene, outlines: &mut [Outline], landmarks: &[Landmark]) -> Result<Matched, PipelineError> {
-    let names = scene.names();
-    let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
-    let mut options = MatchOptions {
-        reference: scene.reference,
-        ..MatchOptions::default()
-    };
-    let refusal = |error| match_refusal(&names, error);
-    let first = match_rings(&outer, landmarks, &options).map_err(refusal)?;
-    order_holes(outlines, first.reference)?;
-    let mut matched = Matched {
-        reference: first.reference,
-        correspondences: vec![first.correspondence],
-        outer: first.report,
-        holes: Vec::new(),
-    };
-    options.reference = Some(matched.reference);
-    options.mirror_hints = MirrorHints::Skip;
-    for hole in 0..outlines.first().map_or(0, |outline| outline.holes().len()) {
-        let rings: Vec<Ring> = outlines.iter().map(|outline| outline.holes()[hole].clone()).collect();
-        let of_hole = match_rings(&rings, &[], &options).map_err(refusal)?;
-        matched.correspondences.push(of_hole.correspondence);
-        matched.holes.push(of_hole.report);
-    }
-    Ok(matched)
 }
 
 /// A triangulation before it is refined.
@@ -340,38 +240,6 @@ fn bare_mesh(
     Err(refusal)
 }
 
-/// The simplification's refusal with the pose's name.
-fn simplify_refusal(names: &[String], error: SimplifyError) -> PipelineError {
-    let pose = match &error {
-        SimplifyError::RingCount { pose, .. }
-        | SimplifyError::Degenerate { pose, .. }
-        | SimplifyError::NotSimple { pose, .. } => Some(*pose),
-        _ => None,
-    };
-    PipelineError::stage(names, pose, error)
-}
-
-/// The matching's refusal with the poses' names.
-fn match_refusal(names: &[String], error: MatchError) -> PipelineError {
-    let name = |pose: usize| names.get(pose).cloned().unwrap_or_default();
-    match error {
-        MatchError::LandmarkOrder { landmark, pose, other } => PipelineError::LandmarkOrder {
-            landmark,
-            pose: name(pose),
-            other: name(other),
-        },
-        MatchError::LandmarksCoincide { first, second, pose } => PipelineError::LandmarksCoincide {
-            first,
-            second,
-            pose: name(pose),
-        },
-        MatchError::LandmarkPlace { pose, .. } | MatchError::Degenerate { pose, .. } | MatchError::NoMatch { pose } => {
-            PipelineError::stage(names, Some(pose), error)
-        }
-        other => PipelineError::stage(names, None, other),
-    }
-}
-
 fn check_hole_counts(names: &[String], drawings: &[Drawing]) -> Result<(), PipelineError> {
     let holes = |drawing: &Drawing| drawing.outline.holes().len();
     let expected = drawings.first().map_or(0, holes);
@@ -384,57 +252,4 @@ fn check_hole_counts(names: &[String], drawings: &[Drawing]) -> Result<(), Pipel
             expected,
         }),
     }
-}
-
-/// A landmark on every pose: where a pose lacks it, where the matching puts it.
-fn everywhere(landmark: &Landmark, correspondence: &Correspondence) -> Option<Vec<f64>> {
-    let (from, known) = landmark
-        .at
-        .iter()
-        .enumerate()
-        .find_map(|(pose, t)| t.map(|t| (pose, t)))?;
-    Some(
-        landmark
-            .at
-            .iter()
-            .enumerate()
-            .map(|(pose, t)| t.unwrap_or_else(|| correspondence.carry(from, pose, known)))
-            .collect(),
-    )
-}
-
-/// Puts the holes of every pose in the order of the reference's: each at the nearest place relative to its outline.
-fn order_holes(outlines: &mut [Outline], reference: usize) -> Result<(), PipelineError> {
-    let places: Vec<Point> = match outlines.get(reference) {
-        Some(outline) => outline
-            .holes()
-            .iter()
-            .map(|hole| relative_place(hole, outline.outer()))
-            .collect(),
-        None => return Ok(()),
-    };
-    if places.len() < 2 {
-        return Ok(());
-    }
-    for outline in outlines.iter_mut() {
-        let mut left: Vec<Ring> = outline.holes().to_vec();
-        let mut ordered = Vec::with_capacity(left.len());
-        for place in &places {
-            let distance = |hole: &Ring| (relative_place(hole, outline.outer()) - place).norm();
-            let nearest = (0..left.len()).min_by(|a, b| distance(&left[*a]).total_cmp(&distance(&left[*b])));
-            if let Some(nearest) = nearest {
-                ordered.push(left.remove(nearest));
-            }
-        }
-        *outline =
-            Outline::new(outline.outer().clone(), ordered).map_err(|error| PipelineError::stage(&[], None, error))?;
-    }
-    Ok(())
-}
-
-/// The middle of a hole's box, in units of the outer ring's box.
-fn relative_place(hole: &Ring, outer: &Ring) -> Point {
-    let bounds = |ring: &Ring| crate::math::point::bounding_box(ring.points()).unwrap_or_default();
-    let ((low, high), (outer_low, outer_high)) = (bounds(hole), bounds(outer));
-    ((low + high) * 0.5 - outer_low).component_div(&(outer_high - outer_low).sup(&Point::repeat(f64::MIN_POSITIVE)))
 }

@@ -18,10 +18,11 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::boundaries::Boundaries;
 use super::figure::{self, Figure, Posed};
 use super::layer::{self, LayerShape, Part, PosedLayer};
 use super::layout::placed;
-use super::mapping::{Boundaries, map_drawings_again};
+use super::mapping::map_drawings_again;
 use super::{
     EditableWeights, MappingReport, PipelineError, checked_weights, editable_weights, landmarks, read_drawings,
 };

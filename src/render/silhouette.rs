@@ -12,6 +12,8 @@
 //!
 //! Cost: O(#rows x #poses) a frame, with #rows at most 20,000 a ring.
 
+use rayon::prelude::*;
+
 use crate::matching::Correspondence;
 use crate::math::Point;
 use crate::mesh::{MeshPoint, PointLocator};
@@ -54,13 +56,19 @@ impl Silhouette {
                 &by_mesh
             };
             let measured: Vec<ArcLength> = curves.iter().map(|curve| ArcLength::new(curve)).collect();
-            let anchors: Option<Vec<MeshPoint>> = row_coordinates(correspondence, &measured)
-                .into_iter()
-                .flat_map(|row| (0..pose_count).map(move |pose| (row, pose)))
-                .map(|(row, pose)| locators[pose].bind(measured[pose].at(correspondence.parameter(pose, row))))
+            let rows = row_coordinates(correspondence, &measured);
+            let anchors: Option<Vec<Vec<MeshPoint>>> = (locators.par_iter().zip(&measured).enumerate())
+                .map(|(pose, (locator, curve))| {
+                    locator.bind_along(rows.iter().map(|&row| curve.at(correspondence.parameter(pose, row))))
+                })
                 .collect();
+            let by_row = |anchors: Vec<Vec<MeshPoint>>| {
+                let anchors = &anchors;
+                let row = |row: usize| anchors.iter().map(move |of_pose| of_pose[row]);
+                (0..rows.len()).flat_map(row).collect()
+            };
             // None: a mesh without triangles has no silhouette.
-            rings.extend(anchors);
+            rings.extend(anchors.map(by_row));
         }
         Self { rings, pose_count }
     }

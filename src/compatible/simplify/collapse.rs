@@ -125,7 +125,7 @@ impl Ord for Queued {
 /// The state of a simplification: linked rings of tuples, an edge grid a pose, a queue of collapses.
 #[derive(Debug)]
 pub(super) struct Collapser<'a> {
-    originals: &'a [PoseOriginal],
+    originals: &'a [&'a PoseOriginal],
     /// Largest deviation, as a fraction of each pose's size.
     tolerance: f64,
     tuples: Vec<Tuple>,
@@ -144,7 +144,7 @@ pub(super) struct Collapser<'a> {
 }
 
 impl<'a> Collapser<'a> {
-    pub(super) fn new(rings: Vec<TupleRing>, originals: &'a [PoseOriginal], tolerance: f64) -> Self {
+    pub(super) fn new(rings: Vec<TupleRing>, originals: &'a [&'a PoseOriginal], tolerance: f64) -> Self {
         let total: usize = rings.iter().map(|ring| ring.tuples.len()).sum();
         let mut collapser = Self {
             originals,

@@ -33,15 +33,16 @@ mod tuples;
 #[cfg(test)]
 mod tests;
 
-use collapse::{Collapser, OriginalRing, PoseOriginal};
-use tuples::{Pin, TupleRing};
+use std::sync::Arc;
 
-use super::CompatibleMesh;
 use rayon::prelude::*;
 
+use super::CompatibleMesh;
 use crate::matching::Correspondence;
 use crate::math::{Point, point};
 use crate::outline::{Outline, OutlineError, Ring, RingError};
+use collapse::{Collapser, OriginalRing, PoseOriginal};
+use tuples::{Pin, TupleRing};
 
 /// What the simplification may do.
 #[derive(Debug, Clone, PartialEq)]
@@ -212,16 +213,26 @@ pub fn simplify(
 /// assert!(mesh.steiner <= first);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug)]
-pub struct Simplification<'a> {
-    outlines: &'a [Outline],
-    originals: Vec<PoseOriginal>,
+#[derive(Debug, Clone)]
+pub struct Simplification {
+    poses: Vec<Arc<PoseAlone>>,
     /// Per ring, all tuples.
     joined: Vec<TupleRing>,
     tolerance: f64,
     kept: Order,
     varied: Order,
     variations: usize,
+}
+
+/// What a simplification makes of each pose without regard to the others.
+#[derive(Debug)]
+struct PoseAlone {
+    outline: Outline,
+    original: PoseOriginal,
+    /// The landmarks on its outer ring.
+    pins: Vec<Pin>,
+    /// Its rings, simplified alone.
+    rings: Vec<TupleRing>,
 }
 
 /// In which order edges collapse, and what is left then.
@@ -233,7 +244,7 @@ struct Order {
     survivors: Vec<usize>,
 }
 
-impl<'a> Simplification<'a> {
+impl Simplification {
     /// How many variations are worth their time: the first few gain most.
     pub const VARIATIONS: usize = 12;
 
@@ -242,10 +253,40 @@ impl<'a> Simplification<'a> {
     /// # Errors
     /// As [`simplify`].
     pub fn new(
-        outlines: &'a [Outline],
+        outlines: &[Outline],
         correspondences: &[Correspondence],
         landmarks: &[Vec<f64>],
         options: &SimplifyOptions,
+    ) -> Result<Self, SimplifyError> {
+        Self::made(outlines, correspondences, landmarks, options, &[])
+    }
+
+    /// The same for outlines of which some may be as they were, with the same landmarks: those are not simplified alone again.
+    /// The result is that of [`Self::new`].
+    ///
+    /// # Errors
+    /// As [`simplify`].
+    pub fn again(
+        &self,
+        outlines: &[Outline],
+        correspondences: &[Correspondence],
+        landmarks: &[Vec<f64>],
+        options: &SimplifyOptions,
+    ) -> Result<Self, SimplifyError> {
+        let before = if options.tolerance == self.tolerance {
+            &self.poses[..]
+        } else {
+            &[]
+        };
+        Self::made(outlines, correspondences, landmarks, options, before)
+    }
+
+    fn made(
+        outlines: &[Outline],
+        correspondences: &[Correspondence],
+        landmarks: &[Vec<f64>],
+        options: &SimplifyOptions,
+        before: &[Arc<PoseAlone>],
     ) -> Result<Self, SimplifyError> {
         // Written so that NaN fails too.
         if !(options.tolerance > 0.0 && options.tolerance.is_finite()) {
@@ -257,19 +298,23 @@ impl<'a> Simplification<'a> {
                 return Err(SimplifyError::RingCount { pose, found, expected });
             }
         }
-        let originals: Vec<PoseOriginal> = outlines
-            .iter()
-            .map(|outline| PoseOriginal {
-                rings: outline.rings().iter().map(OriginalRing::new).collect(),
-                size: outline.diagonal().min(THIN_SHAPE * mean_half_width(outline)),
+        let tolerance = PRELIMINARY_SHARE * options.tolerance;
+        let poses: Vec<Arc<PoseAlone>> = outlines
+            .par_iter()
+            .enumerate()
+            .map(|(pose, outline)| {
+                let pins = pins(landmarks, pose);
+                let kept = before
+                    .get(pose)
+                    .filter(|kept| kept.pins == pins && kept.outline == *outline);
+                kept.map_or_else(|| Arc::new(PoseAlone::new(outline, pins, tolerance)), Arc::clone)
             })
             .collect();
-        let singles = simplify_alone(outlines, &originals, landmarks, PRELIMINARY_SHARE * options.tolerance);
         let joined: Vec<TupleRing> = correspondences
             .iter()
             .enumerate()
             .map(|(ring, correspondence)| {
-                let rings: Vec<TupleRing> = singles.iter().map(|pose| pose[ring].clone()).collect();
+                let rings: Vec<TupleRing> = poses.iter().map(|pose| pose.rings[ring].clone()).collect();
                 TupleRing::joined(&rings, correspondence, MERGE_DISTANCE)
             })
             .collect();
@@ -278,8 +323,7 @@ impl<'a> Simplification<'a> {
             survivors: Vec::new(),
         };
         Ok(Self {
-            outlines,
-            originals,
+            poses,
             joined,
             tolerance: options.tolerance,
             kept: order.clone(),
@@ -334,10 +378,10 @@ impl<'a> Simplification<'a> {
     }
 
     fn collapsed(&self, weights: &[f64]) -> Result<(Simplified, Vec<usize>), SimplifyError> {
-        let (outlines, originals) = (self.outlines, &self.originals);
-        let collapser = Collapser::new(self.joined.clone(), originals, self.tolerance);
+        let originals: Vec<&PoseOriginal> = self.poses.iter().map(|pose| &pose.original).collect();
+        let collapser = Collapser::new(self.joined.clone(), &originals, self.tolerance);
         let (rings, survivors) = collapser.weighted(weights).survivors();
-        let mut polygons = Vec::with_capacity(outlines.len());
+        let mut polygons = Vec::with_capacity(originals.len());
         for (pose, original) in originals.iter().enumerate() {
             let mut points: Vec<Vec<Point>> = rings
                 .iter()
@@ -352,15 +396,12 @@ impl<'a> Simplification<'a> {
             let outer = rings.remove(0);
             polygons.push(Outline::new(outer, rings).map_err(|source| SimplifyError::NotSimple { pose, source })?);
         }
+        let pairs = || polygons.iter().zip(self.poses.iter().map(|pose| &pose.outline));
         let report = SimplifyReport {
             tuples: weights.len(),
             vertices: rings.iter().map(|ring| ring.tuples.len()).sum(),
-            excess_area: polygons
-                .iter()
-                .zip(outlines)
-                .map(|(p, o)| p.area() / o.area() - 1.0)
-                .collect(),
-            deviation: polygons.iter().zip(outlines).map(|(p, o)| deviation(p, o)).collect(),
+            excess_area: pairs().map(|(p, o)| p.area() / o.area() - 1.0).collect(),
+            deviation: pairs().map(|(p, o)| deviation(p, o)).collect(),
         };
         Ok((Simplified { polygons, report }, survivors))
     }
@@ -403,34 +444,35 @@ fn deviation(polygon: &Outline, outline: &Outline) -> f64 {
     farthest / outline.diagonal()
 }
 
-/// Each outline simplified alone; per pose, one ring of single tuples a ring.
-fn simplify_alone(
-    outlines: &[Outline],
-    originals: &[PoseOriginal],
-    landmarks: &[Vec<f64>],
-    tolerance: f64,
-) -> Vec<Vec<TupleRing>> {
-    outlines
-        .par_iter()
-        .enumerate()
-        .map(|(pose, outline)| {
-            let pins: Vec<Pin> = (landmarks.iter().enumerate())
-                .filter_map(|(landmark, row)| {
-                    let &parameter = row.get(pose)?;
-                    Some(Pin { landmark, parameter })
-                })
-                .collect();
-            let rings = outline
-                .rings()
-                .iter()
-                .enumerate()
-                .map(|(ring, points)| TupleRing::single(points, if ring == 0 { &pins } else { &[] }))
-                .collect();
-            let mut alone = Collapser::new(rings, &originals[pose..=pose], tolerance).run();
-            for ring in &mut alone {
-                ring.tuples.sort_by(|a, b| a.parameters[0].total_cmp(&b.parameters[0]));
-            }
-            alone
+/// The landmarks of one pose: `landmarks` are #landmarks x #poses.
+fn pins(landmarks: &[Vec<f64>], pose: usize) -> Vec<Pin> {
+    let numbered = landmarks.iter().enumerate();
+    numbered
+        .filter_map(|(landmark, row)| {
+            let &parameter = row.get(pose)?;
+            Some(Pin { landmark, parameter })
         })
         .collect()
+}
+
+impl PoseAlone {
+    /// An outline simplified alone, to `tolerance` of its size.
+    fn new(outline: &Outline, pins: Vec<Pin>, tolerance: f64) -> Self {
+        let original = PoseOriginal {
+            rings: outline.rings().iter().map(OriginalRing::new).collect(),
+            size: outline.diagonal().min(THIN_SHAPE * mean_half_width(outline)),
+        };
+        let single = |(ring, points): (usize, &Ring)| TupleRing::single(points, if ring == 0 { &pins } else { &[] });
+        let single = outline.rings().iter().enumerate().map(single).collect();
+        let mut rings = Collapser::new(single, &[&original], tolerance).run();
+        for ring in &mut rings {
+            ring.tuples.sort_by(|a, b| a.parameters[0].total_cmp(&b.parameters[0]));
+        }
+        Self {
+            outline: outline.clone(),
+            original,
+            pins,
+            rings,
+        }
+    }
 }

@@ -251,7 +251,8 @@ fn solve_small(mut gram: [[f64; WINDOW]; WINDOW], mut right: [f64; WINDOW], coun
 
 /// The direction of `[cos, sin]`, or `otherwise` where there is none.
 fn unit([cos, sin]: [f64; 2], otherwise: [f64; 2]) -> [f64; 2] {
-    let length = cos.hypot(sin);
+    // Areas and maps are relative to the shape's size, so that squares neither vanish nor overflow.
+    let length = (cos * cos + sin * sin).sqrt();
     if length > 0.0 && length.is_finite() {
         [cos / length, sin / length]
     } else {

@@ -1,0 +1,193 @@
+//! The outlines' part of a mapping: matched, and simplified to polygons with corresponding vertices.
+
+use super::{PipelineError, Stage};
+use crate::compatible::{Simplification, Simplified, SimplifyError, SimplifyOptions};
+use crate::input::Drawing;
+use crate::matching::{Correspondence, Landmark, MatchError, MatchOptions, MatchReport, MirrorHints, match_rings};
+use crate::math::Point;
+use crate::outline::{Outline, Ring};
+use crate::scene::Scene;
+
+/// The outlines matched and simplified, and what that was made of besides the drawings.
+#[derive(Debug)]
+pub(super) struct Boundaries {
+    on_outline: Vec<Landmark>,
+    reference: Option<usize>,
+    tolerance: f64,
+    /// Holes in one order.
+    pub(super) outlines: Vec<Outline>,
+    pub(super) matched: Matched,
+    /// The places of the landmarks, #landmarks x #poses.
+    pub(super) pinned: Vec<Vec<f64>>,
+    /// To be varied.
+    pub(super) simplification: Simplification,
+    pub(super) simplified: Simplified,
+}
+
+impl Boundaries {
+    /// What need not be made again is taken from `before`, which is of the same drawings.
+    pub(super) fn new(
+        scene: &Scene,
+        drawings: &[Drawing],
+        on_outline: &[Landmark],
+        before: Option<&Self>,
+        begins: &mut dyn FnMut(Stage),
+    ) -> Result<Self, PipelineError> {
+        begins(Stage::Matching);
+        let mut outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
+        let matched = match_outlines(scene, &mut outlines, on_outline)?;
+        begins(Stage::Simplification);
+        let pinned: Vec<Vec<f64>> = on_outline
+            .iter()
+            .filter_map(|landmark| everywhere(landmark, &matched.correspondences[0]))
+            .collect();
+        let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
+        let refusal = |error| simplify_refusal(&scene.names(), error);
+        let simplification = match before {
+            Some(before) => before
+                .simplification
+                .again(&outlines, &matched.correspondences, &pinned, &options),
+            None => Simplification::new(&outlines, &matched.correspondences, &pinned, &options),
+        };
+        let mut simplification = simplification.map_err(refusal)?;
+        let simplified = simplification.polygons().map_err(refusal)?;
+        Ok(Self {
+            on_outline: on_outline.to_vec(),
+            reference: scene.reference,
+            tolerance: scene.mesh.simplify,
+            outlines,
+            matched,
+            pinned,
+            simplification,
+            simplified,
+        })
+    }
+
+    /// Whether they are those of this scene, too, whose drawings are the same.
+    pub(super) fn serve(&self, scene: &Scene, on_outline: &[Landmark]) -> bool {
+        self.on_outline == on_outline && self.reference == scene.reference && self.tolerance == scene.mesh.simplify
+    }
+}
+
+/// All rings, matched.
+#[derive(Debug)]
+pub(super) struct Matched {
+    pub(super) reference: usize,
+    /// Outer ring first.
+    pub(super) correspondences: Vec<Correspondence>,
+    pub(super) outer: MatchReport,
+    pub(super) holes: Vec<MatchReport>,
+}
+
+/// Matches the outer rings, puts the holes of all poses in one order, and matches them.
+fn match_outlines(scene: &Scene, outlines: &mut [Outline], landmarks: &[Landmark]) -> Result<Matched, PipelineError> {
+    let names = scene.names();
+    let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
+    let mut options = MatchOptions {
+        reference: scene.reference,
+        ..MatchOptions::default()
+    };
+    let refusal = |error| match_refusal(&names, error);
+    let first = match_rings(&outer, landmarks, &options).map_err(refusal)?;
+    order_holes(outlines, first.reference)?;
+    let mut matched = Matched {
+        reference: first.reference,
+        correspondences: vec![first.correspondence],
+        outer: first.report,
+        holes: Vec::new(),
+    };
+    options.reference = Some(matched.reference);
+    options.mirror_hints = MirrorHints::Skip;
+    for hole in 0..outlines.first().map_or(0, |outline| outline.holes().len()) {
+        let rings: Vec<Ring> = outlines.iter().map(|outline| outline.holes()[hole].clone()).collect();
+        let of_hole = match_rings(&rings, &[], &options).map_err(refusal)?;
+        matched.correspondences.push(of_hole.correspondence);
+        matched.holes.push(of_hole.report);
+    }
+    Ok(matched)
+}
+
+/// The simplification's refusal with the pose's name.
+fn simplify_refusal(names: &[String], error: SimplifyError) -> PipelineError {
+    let pose = match &error {
+        SimplifyError::RingCount { pose, .. }
+        | SimplifyError::Degenerate { pose, .. }
+        | SimplifyError::NotSimple { pose, .. } => Some(*pose),
+        _ => None,
+    };
+    PipelineError::stage(names, pose, error)
+}
+
+/// The matching's refusal with the poses' names.
+fn match_refusal(names: &[String], error: MatchError) -> PipelineError {
+    let name = |pose: usize| names.get(pose).cloned().unwrap_or_default();
+    match error {
+        MatchError::LandmarkOrder { landmark, pose, other } => PipelineError::LandmarkOrder {
+            landmark,
+            pose: name(pose),
+            other: name(other),
+        },
+        MatchError::LandmarksCoincide { first, second, pose } => PipelineError::LandmarksCoincide {
+            first,
+            second,
+            pose: name(pose),
+        },
+        MatchError::LandmarkPlace { pose, .. } | MatchError::Degenerate { pose, .. } | MatchError::NoMatch { pose } => {
+            PipelineError::stage(names, Some(pose), error)
+        }
+        other => PipelineError::stage(names, None, other),
+    }
+}
+
+/// A landmark on every pose: where a pose lacks it, where the matching puts it.
+fn everywhere(landmark: &Landmark, correspondence: &Correspondence) -> Option<Vec<f64>> {
+    let (from, known) = landmark
+        .at
+        .iter()
+        .enumerate()
+        .find_map(|(pose, t)| t.map(|t| (pose, t)))?;
+    Some(
+        landmark
+            .at
+            .iter()
+            .enumerate()
+            .map(|(pose, t)| t.unwrap_or_else(|| correspondence.carry(from, pose, known)))
+            .collect(),
+    )
+}
+
+/// Puts the holes of every pose in the order of the reference's: each at the nearest place relative to its outline.
+fn order_holes(outlines: &mut [Outline], reference: usize) -> Result<(), PipelineError> {
+    let places: Vec<Point> = match outlines.get(reference) {
+        Some(outline) => outline
+            .holes()
+            .iter()
+            .map(|hole| relative_place(hole, outline.outer()))
+            .collect(),
+        None => return Ok(()),
+    };
+    if places.len() < 2 {
+        return Ok(());
+    }
+    for outline in outlines.iter_mut() {
+        let mut left: Vec<Ring> = outline.holes().to_vec();
+        let mut ordered = Vec::with_capacity(left.len());
+        for place in &places {
+            let distance = |hole: &Ring| (relative_place(hole, outline.outer()) - place).norm();
+            let nearest = (0..left.len()).min_by(|a, b| distance(&left[*a]).total_cmp(&distance(&left[*b])));
+            if let Some(nearest) = nearest {
+                ordered.push(left.remove(nearest));
+            }
+        }
+        *outline =
+            Outline::new(outline.outer().clone(), ordered).map_err(|error| PipelineError::stage(&[], None, error))?;
+    }
+    Ok(())
+}
+
+/// The middle of a hole's box, in units of the outer ring's box.
+fn relative_place(hole: &Ring, outer: &Ring) -> Point {
+    let bounds = |ring: &Ring| crate::math::point::bounding_box(ring.points()).unwrap_or_default();
+    let ((low, high), (outer_low, outer_high)) = (bounds(hole), bounds(outer));
+    ((low + high) * 0.5 - outer_low).component_div(&(outer_high - outer_low).sup(&Point::repeat(f64::MIN_POSITIVE)))
+}
