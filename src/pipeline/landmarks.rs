@@ -4,6 +4,8 @@
 //! An end of a line that lies at the outline in every pose is an outline landmark, too: it guides the matching, and the
 //! line is joined to the outline's vertex there.
 
+use rayon::prelude::*;
+
 use super::PipelineError;
 use super::drawings::{mirror_axis, reflected};
 use super::inside::Obstacles;
@@ -61,7 +63,12 @@ pub(super) struct InteriorPath {
 /// # Errors
 /// [`PipelineError`] if a landmark has no place, or is neither inside nor at the outline.
 pub(super) fn sorted(scene: &Scene, drawings: &[Drawing]) -> Result<Landmarks, PipelineError> {
-    let measured: Vec<ArcLength> = drawings.iter().map(|d| ArcLength::new(d.outline.outer())).collect();
+    let measured: Vec<(ArcLength, f64)> = (drawings.iter())
+        .map(|drawing| {
+            let outer = drawing.outline.outer();
+            (ArcLength::new(outer), point::diagonal(outer.points()))
+        })
+        .collect();
     let look = |pose: usize, place: Point| Found::new(scene, drawings, &measured, pose, place);
     let nowhere = |landmark: &String, line: usize| PipelineError::LandmarkNowhere {
         landmark: landmark.clone(),
@@ -72,11 +79,16 @@ pub(super) fn sorted(scene: &Scene, drawings: &[Drawing]) -> Result<Landmarks, P
         points: Vec::new(),
         paths: Vec::new(),
     };
-    for landmark in &scene.landmarks {
+    let everywhere: Vec<Vec<Option<Found>>> = (scene.landmarks.par_iter())
+        .map(|landmark| {
+            let places = landmark.at.iter().enumerate();
+            places
+                .map(|(pose, place)| place.map(|place| look(pose, place)))
+                .collect()
+        })
+        .collect();
+    for (landmark, found) in scene.landmarks.iter().zip(everywhere) {
         let (name, line) = (landmark.name.clone(), landmark.line);
-        let found: Vec<Option<Found>> = (landmark.at.iter().enumerate())
-            .map(|(pose, place)| place.map(|place| look(pose, place)))
-            .collect();
         if found.iter().all(Option::is_none) {
             return Err(nowhere(&name, line));
         }
@@ -347,12 +359,13 @@ struct Found {
 }
 
 impl Found {
-    fn new(scene: &Scene, drawings: &[Drawing], measured: &[ArcLength], pose: usize, place: Point) -> Self {
+    fn new(scene: &Scene, drawings: &[Drawing], measured: &[(ArcLength, f64)], pose: usize, place: Point) -> Self {
         let place = as_used(scene, drawings, pose, place);
-        let (nearest, distance) = measured[pose].nearest(place);
+        let (curve, size) = &measured[pose];
+        let (nearest, distance) = curve.nearest(place);
         // Of the vertices, the nearer end of the edge that it lies on.
-        let corners = measured[pose].vertex_parameters();
-        let (edge, _) = measured[pose].locate(nearest);
+        let corners = curve.vertex_parameters();
+        let (edge, _) = curve.locate(nearest);
         let ends = [edge, (edge + 1) % corners.len()].map(|vertex| corners[vertex]);
         let corner = ends
             .into_iter()
@@ -360,13 +373,12 @@ impl Found {
         let parameter = corner
             .filter(|t| parameter_gap(*t, nearest) <= CORNER_REACH)
             .unwrap_or(nearest);
-        let outline = &drawings[pose].outline;
         Self {
             place,
             parameter,
             distance,
-            inside: outline.contains(place),
-            size: point::diagonal(outline.outer().points()),
+            inside: drawings[pose].outline.contains(place),
+            size: *size,
         }
     }
 

@@ -381,8 +381,7 @@ impl Simplification {
         let originals: Vec<&PoseOriginal> = self.poses.iter().map(|pose| &pose.original).collect();
         let collapser = Collapser::new(self.joined.clone(), &originals, self.tolerance);
         let (rings, survivors) = collapser.weighted(weights).survivors();
-        let mut polygons = Vec::with_capacity(originals.len());
-        for (pose, original) in originals.iter().enumerate() {
+        let polygon = |(pose, original): (usize, &&PoseOriginal)| -> Result<(Outline, f64), SimplifyError> {
             let mut points: Vec<Vec<Point>> = rings
                 .iter()
                 .map(|ring| ring.tuples.iter().map(|tuple| tuple.points[pose]).collect())
@@ -394,14 +393,21 @@ impl Simplification {
                 rings.push(Ring::new(points).map_err(|source| SimplifyError::Degenerate { pose, ring, source })?);
             }
             let outer = rings.remove(0);
-            polygons.push(Outline::new(outer, rings).map_err(|source| SimplifyError::NotSimple { pose, source })?);
-        }
-        let pairs = || polygons.iter().zip(self.poses.iter().map(|pose| &pose.outline));
+            let polygon = Outline::new(outer, rings).map_err(|source| SimplifyError::NotSimple { pose, source })?;
+            let deviation = deviation(&polygon, &self.poses[pose].outline);
+            Ok((polygon, deviation))
+        };
+        let polygons: Vec<Result<_, SimplifyError>> = originals.par_iter().enumerate().map(polygon).collect();
+        let polygons: Vec<(Outline, f64)> = polygons.into_iter().collect::<Result<_, _>>()?;
+        let (polygons, deviation): (Vec<Outline>, Vec<f64>) = polygons.into_iter().unzip();
+        let outlines = self.poses.iter().map(|pose| &pose.outline);
         let report = SimplifyReport {
             tuples: weights.len(),
             vertices: rings.iter().map(|ring| ring.tuples.len()).sum(),
-            excess_area: pairs().map(|(p, o)| p.area() / o.area() - 1.0).collect(),
-            deviation: pairs().map(|(p, o)| deviation(p, o)).collect(),
+            excess_area: (polygons.iter().zip(outlines))
+                .map(|(polygon, outline)| polygon.area() / outline.area() - 1.0)
+                .collect(),
+            deviation,
         };
         Ok((Simplified { polygons, report }, survivors))
     }
