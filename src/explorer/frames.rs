@@ -13,6 +13,7 @@ use super::http::{Request, Response};
 use super::model::Shown;
 use super::problem::Refusal;
 use super::session::Session;
+use super::thinning::thinned;
 
 /// Frames that one request may ask for.
 const MOST_FRAMES: usize = 256;
@@ -50,6 +51,17 @@ fn sharpness(request: &Request) -> Result<Option<f64>, Refusal> {
     }
 }
 
+/// How far outlines may be off, in drawing units.
+fn tolerance(request: &Request) -> Result<f64, Refusal> {
+    let Some(text) = request.value("tolerance") else {
+        return Ok(0.0);
+    };
+    match numbers(text)?.as_slice() {
+        [tolerance] if *tolerance >= 0.0 => Ok(*tolerance),
+        _ => Err(Refusal::bad("tolerance must be a number that is not negative")),
+    }
+}
+
 fn stretch(request: &Request) -> Result<Option<Stretch>, Refusal> {
     let Some(name) = request.value("stretch").filter(|name| !name.is_empty()) else {
         return Ok(None);
@@ -75,11 +87,15 @@ fn asked_weights(request: &Request, shown: &Shown) -> Result<Vec<Vec<f64>>, Refu
                 all.push(provider.weights_at(&numbers(value)?).map_err(Refusal::bad)?);
             }
             "weights" => all.push(checked_weights(&numbers(value)?, &names).map_err(Refusal::bad)?),
+            "poses" => {
+                let alone = |pose: usize| (0..names.len()).map(|k| f64::from(u8::from(k == pose))).collect();
+                all.extend((0..names.len()).map(alone));
+            }
             _ => {}
         }
     }
     match all.len() {
-        0 => Err(Refusal::bad("say where: at=X,Y or weights=W0,W1,...")),
+        0 => Err(Refusal::bad("say where: at=X,Y or weights=W0,W1,... or poses=all")),
         1..=MOST_FRAMES => Ok(all),
         _ => Err(Refusal::bad(format!("at most {MOST_FRAMES} frames at a time"))),
     }
@@ -102,7 +118,10 @@ pub(super) fn frame(request: &Request, session: &Session) -> Result<Response, Re
     let shown = session.shown();
     let bench = &shown.stretched(stretch(request)?)?;
     let sharpness = sharpness(request)?;
-    let with_silhouette = request.value("silhouette") == Some("1");
+    let outlines = match request.value("silhouette") {
+        Some("1") => Some(tolerance(request)?),
+        _ => None,
+    };
     let mut bytes = Vec::new();
     for weights in asked_weights(request, &shown)? {
         let posed = bench.posed(&weights, sharpness)?;
@@ -120,22 +139,24 @@ pub(super) fn frame(request: &Request, session: &Session) -> Result<Response, Re
         for layer in &posed.order {
             block.u32(*layer);
         }
-        write_layers(&mut block, bench, &posed, with_silhouette);
+        write_layers(&mut block, bench, &posed, outlines);
         let length = (bytes.len() - start) as u32;
         bytes[start..start + 4].copy_from_slice(&length.to_le_bytes());
     }
     Ok(Response::binary(bytes))
 }
 
-fn write_layers(block: &mut Words<'_>, bench: &Workbench, posed: &Posed, with_silhouette: bool) {
+/// With outlines to a tolerance, or without any.
+fn write_layers(block: &mut Words<'_>, bench: &Workbench, posed: &Posed, outlines: Option<f64>) {
     for (k, (layer, shape)) in posed.layers.iter().zip(bench.layers()).enumerate() {
         let triangles = shape.mapping().poses.topology().triangles();
         let texture_of = super::pictures::texture_of(bench, k);
         let texture_count = bench.drawings(k).len();
-        let rings = if with_silhouette {
-            bench.silhouette(k, layer)
-        } else {
-            Vec::new()
+        let rings: Vec<Vec<Point>> = match outlines {
+            Some(tolerance) => (bench.silhouette(k, layer).iter())
+                .map(|ring| thinned(ring, tolerance))
+                .collect(),
+            None => Vec::new(),
         };
         block.u32(layer.positions.len());
         block.u32(layer.weights.len());

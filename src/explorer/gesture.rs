@@ -275,7 +275,7 @@ pub(super) fn path(body: &[u8], session: &Session) -> Result<Value, Refusal> {
             played
         }
         (None, Some(_)) => {
-            let keys = own.keys().iter().map(|key| KeyText {
+            let keys = own.given_keys().map(|key| KeyText {
                 time: key.time,
                 at: key.at.clone(),
             });

@@ -84,9 +84,9 @@
 //!
 //! # Frames
 //!
-//! `GET api/frame?at=X,Y` (or `weights=W0,W1,...`; either may be repeated) answers one block after the other, in that order. Optional:
+//! `GET api/frame?at=X,Y` (or `weights=W0,W1,...`; either may be repeated; or `poses=all`, every pose by itself) answers one block after the other, in that order. Optional:
 //! `provider=biharmonic|rbf`, `sharpness=0..1`, `stretch=linear|limited|log` in place of the scene's, for comparison (the first frame with another `stretch` takes some 10 ms longer);
-//! `silhouette=1` adds the blended outlines.
+//! `silhouette=1` adds the blended outlines, `tolerance=T` with as few points as keep them within T drawing units of the whole (0).
 //!
 //! One block, u32 unless f32 is said, #N poses, #L layers:
 //!
@@ -256,6 +256,7 @@ mod scene_json;
 mod security;
 mod server;
 mod session;
+mod thinning;
 mod worker;
 
 use std::path::Path;

@@ -209,7 +209,7 @@ fn animation(scene: &Scene) -> Value {
             Background::Transparent => "transparent".to_owned(),
             Background::Colour([r, g, b, a]) => format!("#{r:02x}{g:02x}{b:02x}{a:02x}"),
         },
-        "keys": animation.keys().iter().map(|key| json!({"time": key.time, "at": key.at})).collect::<Vec<_>>(),
+        "keys": animation.given_keys().map(|key| json!({"time": key.time, "at": key.at})).collect::<Vec<_>>(),
         "duration": animation.duration(),
         "frame_count": animation.frame_count(),
     })

@@ -42,8 +42,10 @@ enum Route {
 
 #[derive(Debug, Clone, PartialEq)]
 struct Path {
-    /// At least one; times increase strictly. Of a loop whose last key repeats the first one, the last is left out.
+    /// At least one; times increase strictly.
     keys: Vec<Key>,
+    /// The last key of a loop that repeats its first, which is not among the others.
+    closing: Option<Key>,
     /// The time after which a loop starts over.
     period: Option<f64>,
     /// The velocity at each key.
@@ -69,10 +71,10 @@ impl Animation {
             (Some(first), Some(last)) => last.time - first.time,
             _ => 0.0,
         };
-        let mut period = None;
+        let (mut period, mut closing) = (None, None);
         if looped && keys.len() > 1 {
             if keys.first().map(|k| &k.at) == keys.last().map(|k| &k.at) {
-                keys.pop();
+                closing = keys.pop();
                 period = Some(span);
             } else {
                 period = Some(span * keys.len() as f64 / (keys.len() - 1) as f64);
@@ -83,7 +85,12 @@ impl Animation {
             fps: Self::DEFAULT_FPS,
             size: Self::DEFAULT_SIZE,
             background: Background::Transparent,
-            path: Path { keys, period, tangents },
+            path: Path {
+                keys,
+                closing,
+                period,
+                tangents,
+            },
             route: Route::Keys,
         }
     }
@@ -126,6 +133,11 @@ impl Animation {
         &self.path.keys
     }
 
+    /// The keys as they were given: of a loop that ends where it begins, its last key, too.
+    pub fn given_keys(&self) -> impl Iterator<Item = &Key> {
+        self.path.keys.iter().chain(&self.path.closing)
+    }
+
     /// Whether it is a loop.
     #[must_use]
     pub fn is_loop(&self) -> bool {
@@ -164,7 +176,9 @@ impl Animation {
     /// The place in the pose space at `time`, in seconds. Before the first and after the last key it rests.
     #[must_use]
     pub fn at(&self, time: f64) -> Vec<f64> {
-        let Path { keys, period, tangents } = &self.path;
+        let Path {
+            keys, period, tangents, ..
+        } = &self.path;
         let start = keys[0].time;
         let time = match period {
             Some(period) => start + (time - start).rem_euclid(*period),
@@ -277,6 +291,9 @@ mod tests {
         assert_eq!(path.duration(), 2.5);
         assert_eq!(path.frame_count(), 60);
         assert_eq!(path.at(2.5), path.at(0.0));
+        let given: Vec<Key> = path.given_keys().cloned().collect();
+        assert_eq!((path.keys().len(), given.len()), (2, 3));
+        assert_eq!(Animation::new(given, true), path);
     }
 
     #[test]

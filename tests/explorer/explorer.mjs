@@ -10,6 +10,7 @@ import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
 import { createRequire } from 'node:module';
 import { request } from 'node:http';
 import { basename, dirname, join, resolve } from 'node:path';
+import { conflict, keysInTime, lines, pseudoPoses } from './edits.mjs';
 import { decodePng, difference } from './picture.mjs';
 
 const players = process.env.PLAYERS ?? '.';
@@ -78,10 +79,15 @@ async function proofs() {
   await keys(page);
   if (plane) await movedPose(page, answer);
   await landmark(page);
+  const tools = { page, scene, check, centre, drag, drawn, edited, saved, padPoint };
+  await lines(tools);
   if (plane) await gesture(page, answer);
+  await keysInTime(tools);
+  if (plane) await pseudoPoses(tools);
   if (plane) await maps(page);
   await onPicture(page);
   await outsideChange(page);
+  if (plane) await conflict(tools);
   await exported(page);
   await labels(page);
   check(errors.length === 0, `the page reports no error${errors.length > 0 ? `: ${errors.join('; ')}` : ''}`);

@@ -1,13 +1,14 @@
 // `?bench`: what a drag costs here, measured by the page: request, answer, drawing, displayed frames.
 import { getWords, readFrames } from './api.js';
 import { byId, h } from './dom.js';
-import { settled, wantFrame } from './frames.js';
+import { outlines, settled, wantFrame } from './frames.js';
 import { drawNow } from './picture.js';
-import { moveTo, on, store } from './state.js';
+import { Drag, look, moveTo, on, store } from './state.js';
 
 const REQUESTS = 300;
 const DRAWINGS = 60;
 const SECONDS = 5;
+const LANDMARKS = 16;
 
 const sorted = (values) => values.slice().sort((a, b) => a - b);
 const quantile = (values, part) => sorted(values)[Math.min(values.length - 1, Math.floor(part * values.length))];
@@ -19,6 +20,36 @@ function along(t) {
   if (!box || dimension !== 2) return poses[Math.floor(t) % poses.length].at;
   const [[x0, y0], [x1, y1]] = box;
   return [0.5 * (x0 + x1) + 0.5 * (x1 - x0) * Math.sin(2.3 * t), 0.5 * (y0 + y1) + 0.5 * (y1 - y0) * Math.sin(3.1 * t + 0.5)];
+}
+
+/** Moves landmarks, one after the other, until the match and the mesh are there again; leaves the scene as it was. */
+async function moveLandmarks() {
+  const { landmarks, poses } = store.scene;
+  const movable = landmarks.filter((landmark) => !landmark.path && (landmark.layer ?? 0) === store.layer);
+  const times = [];
+  if (movable.length === 0) return times;
+  look({ main: 'matches' });
+  await displayed();
+  await displayed();
+  for (let k = 0; k < LANDMARKS; k++) {
+    const { name, at } = movable[Math.floor((k * movable.length) / LANDMARKS)];
+    const [pose, [x, y]] = Object.entries(at).find(([own]) => poses.some((other) => other.name === own));
+    const drag = new Drag('measure');
+    const before = store.state.revisions.shape;
+    const seen = new Promise((done) => {
+      const started = performance.now();
+      const stop = on('matched', (shape) => shape > before && (stop(), done(performance.now() - started)));
+      setTimeout(() => (stop(), done(null)), 5000);
+    });
+    drag.to([{ op: 'move_landmark', landmark: name, at: { [pose]: [x + 1.5, y + 0.5] } }]);
+    const time = await seen;
+    if (time !== null) times.push(time);
+    const shape = store.state.revisions.shape;
+    await drag.cancel();
+    for (let wait = 0; wait < 40 && store.state.revisions.shape === shape; wait++) await new Promise((go) => setTimeout(go, 50));
+  }
+  look({ main: 'picture' });
+  return times;
 }
 
 const displayed = () => new Promise((done) => requestAnimationFrame(done));
@@ -36,7 +67,7 @@ export async function measure() {
   let bytes = 0;
   for (let k = 0; k < REQUESTS; k++) {
     const started = performance.now();
-    const words = await getWords('frame', { at: along(k / 20), silhouette: 1 });
+    const words = await getWords('frame', { at: along(k / 20), ...outlines() });
     readFrames(words);
     requests.push(performance.now() - started);
     bytes = words.whole.byteLength;
@@ -82,6 +113,11 @@ export async function measure() {
   say('While dragging', `${(drawn / seconds).toFixed(1)} frames a second drawn, ${(displays / seconds).toFixed(1)} displayed`);
   say('From moving to drawn', shown(latencies));
   wantFrame();
+  const matches = await moveLandmarks();
+  if (matches.length > 0) {
+    result.landmark = { median: quantile(matches, 0.5), high: quantile(matches, 0.95) };
+    say('From moving a landmark to the new match and mesh', shown(matches));
+  }
   dialog.append(h('output', { class: 'hidden', id: 'bench-result' }, JSON.stringify(result)));
   dialog.showModal();
 }

@@ -1,5 +1,5 @@
 // Frames of where the probe is: one request at a time, and the newest place wins.
-import { getJson, getWords, readFrames, Refused, Words } from './api.js';
+import { getJson, getWords, query, readFrames, Refused, Words } from './api.js';
 import { emit, on, store } from './state.js';
 
 let wanted = false;
@@ -9,6 +9,11 @@ const waiting = [];
 export const roundTrips = [];
 
 // Pointers move once a displayed frame, so that is how often frames are asked for.
+
+/** Pixels of the screen that an outline may be off: the area of a pixel that it covers changes by as much at most. */
+const OUTLINES_WITHIN = 0.04;
+let asked = Infinity;
+export const outlines = () => ({ silhouette: 1, tolerance: OUTLINES_WITHIN * store.pixel });
 
 /** What a comparison shows in place of the scene's own settings. */
 const instead = () => store.view.compare ?? {};
@@ -31,7 +36,8 @@ async function ask() {
 }
 
 async function askFrame(place, started) {
-  const words = await getWords('frame', { at: place, silhouette: 1, ...instead() });
+  asked = store.pixel;
+  const words = await getWords('frame', { at: place, ...outlines(), ...instead() });
   roundTrips.push(performance.now() - started);
   if (roundTrips.length > 240) roundTrips.shift();
   const [frame] = readFrames(words);
@@ -63,12 +69,14 @@ export function settled() {
 
 on('place weights shape', wantFrame);
 on('view', (changes) => 'compare' in changes && wantFrame());
+// Outlines for a smaller picture are too coarse for a larger one.
+on('drawn', () => store.pixel < asked && wantFrame());
 
 /** Frames of poses or places, for what lies behind the picture. */
 export async function framesOf(name, values) {
   if (values.length === 0 || !(store.state?.revisions.shape > 0)) return [];
-  const search = values.map((value) => `${name}=${value.join(',')}`).join('&');
-  const response = await fetch(`api/frame?silhouette=1&${search}`);
+  const search = values.map((value) => `${name}=${value}`).join('&');
+  const response = await fetch(`api/frame${query(outlines())}&${search}`);
   if (!response.ok) return [];
   return readFrames(new Words(await response.arrayBuffer())).filter((frame) => frame.shape === store.puppet?.shape);
 }

@@ -2,7 +2,7 @@
 import { byId, h } from './dom.js';
 import { iconButton, menu, numberField, row, segments, slider } from './controls.js';
 import { icon } from './icons.js';
-import { Drag, choosePose, edit, look, moveTo, on, rounded, store } from './state.js';
+import { choosePose, Drag, edit, look, moveTo, on, onChange, rounded, store } from './state.js';
 
 const root = byId('inspector');
 const TABS = [['scene', 'Scene'], ['landmarks', 'Landmarks'], ['keys', 'Keys'], ['problems', 'Problems']];
@@ -171,10 +171,16 @@ function buildKeys() {
   const { animation } = store.scene;
   if (!animation) return panels.keys.replaceChildren(h('p', { class: 'empty' }, 'There is no animation.'));
   const keys = animation.keys.map((key) => ({ time: key.time, at: key.at.slice() }));
+  const closes = animation.loop && keys.length > 2 && keys[0].at.join() === keys.at(-1).at.join();
   const changed = (label) => edit([{ op: 'set_keys', keys: keys.slice().sort((a, b) => a.time - b.time) }], label);
   const rows = keys.map((key, index) => h('tr', {},
     h('td', {}, numberField(`Time of key ${index + 1}`, () => key.time, (value) => { key.time = value; changed('move a key'); }, { digits: 3, step: 0.05 })),
-    ...key.at.map((_, d) => h('td', {}, numberField(`${'xyz'[d] ?? d} of key ${index + 1}`, () => key.at[d], (value) => { key.at[d] = value; changed('move a key'); }))),
+    ...key.at.map((_, d) => h('td', {}, numberField(`${'xyz'[d] ?? d} of key ${index + 1}`, () => key.at[d], (value) => {
+      // A loop that ends where it begins still does.
+      if (closes && (index === 0 || index === keys.length - 1)) [keys[0], keys.at(-1)].forEach((end) => (end.at[d] = value));
+      key.at[d] = value;
+      changed('move a key');
+    }))),
     h('td', {}, iconButton('reach', `Go to key ${index + 1}`, () => moveTo(key.at.slice()))),
     h('td', {}, iconButton('trash', `Remove key ${index + 1}`, () => { keys.splice(index, 1); changed('remove a key'); }))));
   const names = keys[0]?.at.map((_, d) => h('th', { scope: 'col' }, 'xyz'[d] ?? `p${d + 1}`)) ?? [];
@@ -216,12 +222,14 @@ function buildProblems() {
     ...(notes.length > 0 ? [section('Notes', notes.map((note) => h('p', { class: 'small' }, note)))] : []));
 }
 
-// Landmarks: filled by matches.js.
+// Landmarks: filled by landmarks.js.
 export const landmarksPanel = panels.landmarks;
 
 const busy = () => panels.scene.contains(document.activeElement) && document.activeElement.matches('input[type="range"], select');
 let shape = '';
-on('scene pose', () => {
+// Landmarks have their own panel.
+const besides = () => [store.pose, store.state?.problems, { ...store.scene, landmarks: null, revision: null, notes: null }];
+onChange('scene pose', besides, () => {
   // While a control is held it must not be made anew.
   const now = JSON.stringify([store.pose, store.scene.poses.map((pose) => [pose.name, pose.mirror]), store.scene.pseudo_poses, store.scene.dimension]);
   if (now !== shape || !busy()) {
@@ -236,7 +244,7 @@ on('scene pose', () => {
     updated.forEach((control) => control.update());
   }
 });
-on('scene', () => {
+onChange('scene', () => [store.scene.animation, store.state?.problems], () => {
   if (!panels.keys.contains(document.activeElement) || document.activeElement.tagName === 'BUTTON') return buildKeys();
   const label = document.activeElement.getAttribute('aria-label');
   buildKeys();

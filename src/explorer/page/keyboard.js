@@ -3,7 +3,7 @@ import { h } from './dom.js';
 import { iconButton } from './controls.js';
 import { copyCommand, openExport } from './export.js';
 import { arm, isArmed } from './recorder.js';
-import { addFresh, escapeMatches } from './matches.js';
+import { addFresh, escapeMatches } from './marking.js';
 import { compare } from './inspector.js';
 import { goTo, nudge } from './pad.js';
 import { actualSize, fit, zoomBy } from './picture.js';
@@ -26,11 +26,12 @@ const KEYS = [
   [['S'], 'Snap', (e) => e.key === 's', () => look({ snap: !store.view.snap })],
   [['B'], 'Compare: hold for B', null],
   [['Tab', 'V'], 'Picture or matches', (e) => e.key === 'v', () => look({ main: store.view.main === 'picture' ? 'matches' : 'picture' })],
+  [['L'], 'New landmarks: points or lines', (e) => e.key === 'l', () => look({ mark: store.view.mark === 'line' ? 'point' : 'line' })],
   [['0'], 'Fit; with Shift, actual size', (e) => e.code === 'Digit0', (e) => (e.shiftKey ? actualSize() : fit())],
   [['+', '−'], 'Zoom', (e) => ['+', '=', '-'].includes(e.key), (e) => zoomBy(e.key === '-' ? 0.8 : 1.25)],
   [['C'], 'Copy as command', (e) => e.key === 'c', () => copyCommand()],
   [['E'], 'Export', (e) => e.key === 'e', () => openExport()],
-  [['Enter'], 'Add the new landmark', null],
+  [['Enter'], 'End the line; add the new landmark', null],
   [['Ctrl', 'Z'], 'Undo; with Shift, redo', null],
   [['?'], 'This list', (e) => e.key === '?', () => openKeys()],
 ];

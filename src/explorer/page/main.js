@@ -8,6 +8,7 @@ import './weights.js';
 import './timeline.js';
 import { showTab } from './inspector.js';
 import './matches.js';
+import './landmarks.js';
 import './export.js';
 import './keyboard.js';
 import './bars.js';

@@ -100,19 +100,26 @@ function thumbnail(pose, index) {
   button.addEventListener('pointerdown', (event) => dragPose(event, button));
   button.addEventListener('dblclick', () => moveTo(store.scene.poses[index].at.slice()));
   button.addEventListener('keydown', (event) => {
-    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
     const own = store.scene.poses[indexOf(button)];
-    if (way && own) {
-      event.preventDefault();
-      event.stopPropagation();
-      const by = event.shiftKey ? step() / 5 : step();
-      edit([{ op: 'move_pose', pose: own.name, at: own.at.map((v, d) => (d < 2 ? rounded(v + way[d] * by, 6) : v)) }], `move pose '${own.name}'`, `arrow ${own.name}`);
+    const at = own && stepped(event, own.at);
+    if (at) {
+      edit([{ op: 'move_pose', pose: own.name, at }], `move pose '${own.name}'`, `arrow ${own.name}`);
     } else if (event.key === 'Enter' || event.key === ' ') {
       event.preventDefault();
       goTo(own);
     }
   });
   return button;
+}
+
+/** Where an arrow key takes a place of the plane; undefined for other keys. */
+function stepped(event, at) {
+  const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+  if (!way) return undefined;
+  event.preventDefault();
+  event.stopPropagation();
+  const by = event.shiftKey ? step() / 5 : step();
+  return at.map((v, d) => (d < 2 ? rounded(v + way[d] * by, 6) : v));
 }
 
 const indexOf = (button) => store.scene.poses.findIndex((pose) => pose.name === button.dataset.pose);
@@ -220,15 +227,22 @@ function drawLines() {
     if (store.gesture.path) made.push(polyline(store.gesture.path.map(([, ...at]) => at), 'path fresh'));
   }
   store.scene.pseudo_poses.forEach((pseudo, index) => made.push(...pseudoPose(pseudo, index)));
+  const held = document.activeElement?.dataset?.pseudo;
   lines.replaceChildren(...made);
+  if (held) lines.querySelector(`[data-pseudo="${held}"]`)?.focus({ preventScroll: true });
 }
 
 function pseudoPose(pseudo, index) {
   const [from, at] = [view.pixel(pseudo.from), view.pixel(pseudo.at)];
   const handle = (name, [x, y]) => {
-    const dot = s('circle', { class: `pseudo ${name}`, cx: x, cy: y, r: name === 'at' ? 5 : 3.5, tabindex: '-1' });
-    dot.append(s('title', {}, name === 'at' ? `Pseudo-pose ${index + 1}: here` : `Pseudo-pose ${index + 1}: shows what was here`));
+    const what = name === 'at' ? `Pseudo-pose ${index + 1}: here` : `Pseudo-pose ${index + 1}: shows what was here`;
+    const dot = s('circle', { class: `pseudo ${name}`, cx: x, cy: y, r: name === 'at' ? 5 : 3.5, tabindex: '0', role: 'button', 'aria-label': `${what}. Arrow keys move it.`, 'data-pseudo': `${index} ${name}` });
+    dot.append(s('title', {}, what));
     dot.addEventListener('pointerdown', (event) => dragPseudo(event, pseudo, index, name));
+    dot.addEventListener('keydown', (event) => {
+      const to = stepped(event, pseudo[name]);
+      if (to) edit([{ op: 'move_pseudo_pose', index, [name]: to }], 'move a pseudo-pose', `arrow ${what}`);
+    });
     return dot;
   };
   return [s('line', { class: 'pseudo', x1: from[0], y1: from[1], x2: at[0], y2: at[1] }), handle('from', from), handle('at', at)];

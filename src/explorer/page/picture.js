@@ -102,6 +102,7 @@ function draw() {
     return;
   }
   const view = drawingView();
+  store.pixel = 1 / (view.scale * ratio);
   painter.begin({ scale: view.scale * ratio, x: view.x * ratio, y: view.y * ratio });
   const inLight = store.scene.texture?.blending === 'linear';
   const accent = styled('--accent', 1);
@@ -145,14 +146,14 @@ export function drawNow() {
 // The poses as they are drawn, for the pad.
 
 /** Milliseconds without another shape after which thumbnails are drawn. */
-const THUMBNAILS_AFTER = 60;
+const THUMBNAILS_AFTER = 400;
 /** Pixels of a thumbnail while it is drawn. */
 const THUMBNAIL = 192;
 let resting = 0;
 
 async function drawThumbnails() {
-  const count = store.scene.poses.length;
-  const frames = await framesOf('weights', store.scene.poses.map((_, k) => Array.from({ length: count }, (_, i) => Number(i === k))));
+  const frames = await framesOf('poses', ['all']);
+  if (frames.length !== store.scene.poses.length) return;
   // Drawn into the picture's own canvas and copied before anybody sees it.
   const side = Math.min(THUMBNAIL, canvas.width, canvas.height);
   frames.forEach((frame, pose) => {
@@ -170,16 +171,19 @@ async function drawThumbnails() {
 }
 
 let loading = 0;
+/** The revision of the pictures that the painter has. */
+let pictures = null;
 async function load() {
   const mine = ++loading;
   const { puppet, meshes } = store;
   try {
-    const bitmaps = await Promise.all(puppet.layers.map((layer, l) => Promise.all(layer.textures.map(async (_, k) => {
+    const bitmaps = pictures === puppet.pictures ? null : await Promise.all(puppet.layers.map((layer, l) => Promise.all(layer.textures.map(async (_, k) => {
       const answer = await fetch(`api/texture?layer=${l}&index=${k}&kind=colour&v=${puppet.pictures}`);
       return createImageBitmap(await answer.blob(), { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
     }))));
     if (mine !== loading) return;
     painter.load(puppet, meshes, bitmaps);
+    pictures = puppet.pictures;
     loaded = puppet;
     document.documentElement.dataset.shape = puppet.shape;
     redraw();
@@ -195,6 +199,8 @@ canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
 canvas.addEventListener('webglcontextrestored', () => {
   painter.build();
   painter.layers = [];
+  painter.pictures = [];
+  pictures = null;
   load();
 });
 
@@ -205,8 +211,7 @@ async function drawUnder() {
   if (onion === 'off' || !store.scene) {
     under = [];
   } else if (onion === 'poses') {
-    const count = store.scene.poses.length;
-    under = await framesOf('weights', store.scene.poses.map((_, k) => Array.from({ length: count }, (_, i) => Number(i === k))));
+    under = await framesOf('poses', ['all']);
   } else {
     const path = store.path ?? [];
     const wanted = 7;
@@ -246,12 +251,15 @@ canvas.addEventListener('pointerdown', (event) => {
 });
 badge.addEventListener('click', () => emit('toggle-mesh'));
 
-on('shape', load);
+// What is hidden waits: while landmarks are dragged, meshes come faster than they could be loaded.
+const loadIfSeen = () => store.view.main === 'picture' && store.puppet && loaded !== store.puppet && load();
+on('shape', loadIfSeen);
 // At once: it is shown with the next displayed frame, not the one after.
 on('frame', draw);
 on('scene zoom theme', redraw);
 on('view', (changes) => {
   stage.dataset.tool = store.view.tool;
+  if ('main' in changes) loadIfSeen();
   redraw();
   if ('onion' in changes) drawUnder();
 });

@@ -19,6 +19,7 @@ export class PuppetPainter {
     this.canvas = canvas;
     this.gl = context(canvas);
     this.layers = [];
+    this.pictures = [];
     if (this.gl) this.build();
   }
 
@@ -28,21 +29,25 @@ export class PuppetPainter {
     this.areas = null;
   }
 
-  /** Takes `api/puppet`, the meshes and, per layer and texture, a bitmap. */
+  /** Takes `api/puppet`, the meshes and, per layer and texture, a bitmap; without bitmaps the pictures that are there stay. */
   load(puppet, meshes, bitmaps) {
     if (!this.gl) return;
     this.layers.forEach((layer) => this.free(layer));
-    this.layers = puppet.layers.map((layer, k) => this.layer(layer, meshes[k], bitmaps[k]));
+    if (bitmaps) {
+      this.pictures.flat().forEach((picture) => this.gl.deleteTexture(picture));
+      this.pictures = bitmaps.map((layer) => layer.map((bitmap) => pictureTexture(this.gl, bitmap)));
+    }
+    this.layers = puppet.layers.map((layer, k) => this.layer(layer, meshes[k], this.pictures[k]));
   }
 
-  layer(puppet, mesh, bitmaps) {
+  layer(puppet, mesh, pictures) {
     const { gl } = this;
     const drawn = new PointTexture(gl, mesh.vertices, puppet.textures.length);
     const textures = puppet.textures.map((of, k) => {
       const { width, height, origin, scale } = of.colour;
       drawn.fill(mesh.poses[of.pose], k);
       return {
-        picture: pictureTexture(gl, bitmaps[k]),
+        picture: pictures[k],
         row: k * drawn.rows,
         area: areaOf(mesh.triangles, mesh.poses[of.pose]) * scale * scale,
         texels: [scale / width, scale / height, (-origin[0] * scale) / width, (-origin[1] * scale) / height],
@@ -83,7 +88,6 @@ export class PuppetPainter {
 
   free(layer) {
     const { gl } = this;
-    layer.textures.forEach(({ picture }) => gl.deleteTexture(picture));
     layer.drawn.free();
     layer.places.free();
     for (const { array, buffer } of [layer.inside, layer.skirt]) {

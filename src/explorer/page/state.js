@@ -1,7 +1,10 @@
 // What the page knows, and who wants to hear when it changes.
 //
-// Events: `scene`, `state`, `shape` (meshes or pictures), `weights` (weights of the same places may differ), `place` (the probe),
-// `frame` (a frame arrived), `view` (what is shown and how), `pose` (another pose is looked at), `gesture` (a path to be saved).
+// Events: `changing` (what changed is being asked for), `scene`, `state`, `shape` (meshes or pictures), `weights` (weights of the same
+// places may differ), `place` (the probe), `frame` (a frame arrived), `view` (what is shown and how), `pose` (another pose is looked
+// at), `gesture` (a path to be saved); `match` (the match arrived), `match-stale` (it is not what was edited), `layer` (the matches
+// show another one), `marks` (what is chosen or new), `held` (where it is dragged); `drawn` and `matched` (frame or match are on the
+// screen).
 import { getJson, getWords, postJson, readMeshes, Refused } from './api.js';
 
 export const store = {
@@ -13,6 +16,8 @@ export const store = {
   /** Where the probe is, and the frame there. */
   place: [0, 0],
   frame: null,
+  /** Drawing units a pixel of the screen, as it was drawn last; 0 before that. */
+  pixel: 0,
   /** The pose that is looked at, or null. */
   pose: null,
   layer: 0,
@@ -21,6 +26,7 @@ export const store = {
     map: 'plain', // or 'weight', 'validity'
     tool: 'reach', // or 'pan', 'bend'
     onion: 'off', // or 'poses', 'path'
+    mark: 'point', // or 'line': what a click on a drawing begins
     mesh: false,
     snap: false,
     compare: null, // settings shown beside the scene's own
@@ -30,11 +36,24 @@ export const store = {
 
 const listeners = new Map();
 
+/** Calls `listener` at each of these events, until what is returned is called. */
 export function on(names, listener) {
   for (const name of names.split(' ')) {
     if (!listeners.has(name)) listeners.set(name, []);
     listeners.get(name).push(listener);
   }
+  return () => names.split(' ').forEach((name) => listeners.set(name, listeners.get(name).filter((other) => other !== listener)));
+}
+
+/** Calls `listener` at each of these events at which what `of` says is not what it said before. */
+export function onChange(names, of, listener) {
+  let before;
+  on(names, (detail) => {
+    const now = JSON.stringify(of());
+    if (now === before) return;
+    before = now;
+    listener(detail);
+  });
 }
 
 export function emit(name, detail) {
@@ -91,6 +110,7 @@ async function follow() {
 }
 
 let taking = Promise.resolve();
+let sceneText = null;
 
 /** Takes a state that the server answered, one after the other. */
 export function take(state) {
@@ -106,15 +126,24 @@ async function taken(state) {
   const shape = changed('shape') || changed('pictures');
   revisions = { ...state.revisions };
   try {
-    if (scene || shape || weights) {
-      store.scene = await getJson('scene');
+    const meshes = shape && state.revisions.shape > 0;
+    emit('changing', { meshes });
+    const [wholeScene, puppet, words] = await Promise.all([
+      scene || shape || weights ? getJson('scene') : null,
+      meshes ? getJson('puppet') : null,
+      meshes ? getWords('mesh') : null,
+    ]);
+    if (wholeScene) {
+      store.scene = wholeScene;
       if (store.place.length !== store.scene.dimension && store.scene.poses.length > 0) {
         store.place = store.scene.poses[0].at.slice();
       }
-      emit('scene');
+      // Most revisions of a drag are what was shown at once, computed.
+      const text = JSON.stringify({ ...wholeScene, revision: null });
+      if (text !== sceneText) emit('scene');
+      sceneText = text;
     }
-    if (shape && state.revisions.shape > 0) {
-      const [puppet, words] = await Promise.all([getJson('puppet'), getWords('mesh')]);
+    if (meshes) {
       store.puppet = puppet;
       store.meshes = readMeshes(words);
       store.layer = Math.min(store.layer, puppet.layers.length - 1);

@@ -4,7 +4,7 @@ import { byId, clamp, follow, fixed, h } from './dom.js';
 import { arm, isArmed, recording } from './recorder.js';
 import { iconButton, numberField, slider, toggle } from './controls.js';
 import { icon } from './icons.js';
-import { edit, emit, moveTo, on, rounded, store } from './state.js';
+import { edit, emit, moveTo, on, onChange, rounded, store } from './state.js';
 import { showPath } from './pad.js';
 
 const root = byId('timeline');
@@ -255,7 +255,7 @@ on('recording', () => {
   drawGesture();
 });
 let first = true;
-on('scene', () => {
+onChange('scene', () => store.scene.animation, () => {
   if (first || !store.gesture) loops = Boolean(store.scene.animation?.loop);
   first = false;
   loopButton.update();

@@ -1,0 +1,138 @@
+// What is drawn over the drawing of a pose: outline, links, mesh, landmarks.
+import { s, set } from './dom.js';
+import { match, ownLandmarks, placesOf } from './match.js';
+import { store } from './state.js';
+
+/** Fills a layer of a cell unless it was made of the very same things already: what is not touched is not painted again. */
+function fill(layer, of, make) {
+  const same = layer.madeOf?.length === of.length && of.every((value, k) => Object.is(value, layer.madeOf[k]));
+  if (same) return;
+  layer.madeOf = of;
+  layer.replaceChildren(...make());
+}
+
+/** Draws all but the picture; `px`: drawing units of a CSS pixel. */
+export function drawCell(cell, px) {
+  const { layers, index } = cell;
+  const { data, pointed } = match;
+  const pose = data.poses[index];
+  const ring = (points) => `M${pairs(points).map((p) => p.join(' ')).join('L')}Z`;
+  fill(layers.outline, [pose, px], () => [
+    ...(pose.outline ? [s('path', { d: [pose.outline, ...pose.holes].map(ring).join(''), 'stroke-width': 1.5 * px })] : []),
+    ...salient(pose, px),
+  ]);
+  const mesh = store.view.mesh && data.shape > 0 ? store.meshes[store.layer]?.poses[index] : null;
+  fill(layers.mesh, [mesh, px], () => (mesh ? [meshPath(index, px)] : []));
+  const links = data.links ?? [];
+  fill(layers.links, [pose, px, pointed], () => {
+    const roomy = perimeter(pose.outline ?? []) / px / Math.max(links.length, 1) > 24;
+    return links.flatMap((link, k) => (link.landmark ? [] : numbered(link.at[index], k, link.hue, px, roomy)));
+  });
+  drawMarks(cell, px);
+}
+
+function perimeter(flat) {
+  let sum = 0;
+  for (let k = 0; k < flat.length; k += 2) sum += Math.hypot(flat[(k + 2) % flat.length] - flat[k], flat[(k + 3) % flat.length] - flat[k + 1]);
+  return sum;
+}
+
+const pairs = (flat) => Array.from({ length: flat.length / 2 }, (_, k) => [flat[2 * k], flat[2 * k + 1]]);
+
+const salient = (pose, px) => (pose.salient ?? []).map(({ at: [x, y] }) => s('circle', { class: 'salient', cx: x, cy: y, r: 2 * px, 'stroke-width': px }));
+
+function numbered(at, k, colour, px, roomy) {
+  if (!at) return [];
+  const isPointed = match.pointed === k;
+  const shown = roomy || isPointed;
+  const [x, y] = at;
+  const label = s('text', { x, y: y + 3.1 * px, 'font-size': 8.5 * px, 'text-anchor': 'middle' });
+  label.textContent = k + 1;
+  const disc = s('circle', { cx: x, cy: y, r: (shown ? (isPointed ? 9 : 7) : 3.5) * px });
+  disc.style.fill = colour;
+  return [s('g', { class: 'link', 'data-link': k }, disc, shown ? label : null)];
+}
+
+function meshPath(index, px) {
+  const mesh = store.meshes[store.layer];
+  const points = mesh.poses[index];
+  const at = (v) => `${points[2 * v].toFixed(1)} ${points[2 * v + 1].toFixed(1)}`;
+  let good = '';
+  let wrong = '';
+  for (let t = 0; t < mesh.triangles.length; t += 3) {
+    const [a, b, c] = mesh.triangles.subarray(t, t + 3);
+    const area = (points[2 * b] - points[2 * a]) * (points[2 * c + 1] - points[2 * a + 1]) - (points[2 * b + 1] - points[2 * a + 1]) * (points[2 * c] - points[2 * a]);
+    const path = `M${at(a)}L${at(b)} ${at(c)}Z`;
+    if (area > 0) good += path;
+    else wrong += path;
+  }
+  return s('g', { 'stroke-width': 0.6 * px }, s('path', { d: good }), s('path', { class: 'wrong', d: wrong }));
+}
+
+/** The landmarks of a pose: given ones solid, carried ones hollow or dashed. Those that look as before stay. */
+function drawMarks(cell, px) {
+  const before = cell.marks ?? new Map();
+  cell.marks = new Map();
+  const add = (name, path, places, kind) => {
+    const looks = looksOf(cell, name, path, places, px, kind);
+    const key = JSON.stringify(looks);
+    cell.marks.set(key, before.get(key) ?? (path ? lineMark : mark)(looks));
+  };
+  for (const landmark of ownLandmarks()) {
+    const places = placesOf(landmark, cell.pose.name, cell.index);
+    if (places) add(landmark.name, landmark.path, places.points, places.given ? 'given' : 'carried');
+  }
+  const fresh = match.fresh?.at[cell.pose.name];
+  if (fresh) add(null, match.fresh.path, match.fresh.path ? fresh : [fresh], 'fresh');
+  for (const [key, element] of before) if (!cell.marks.has(key)) element.remove();
+  // What is pointed at is drawn over the others.
+  const isMarked = (element) => element.classList.contains('marked');
+  const elements = [...cell.marks.values()];
+  for (const element of [...elements.filter((e) => !isMarked(e)), ...elements.filter(isMarked)]) {
+    if (element.parentNode !== cell.layers.marks || isMarked(element)) cell.layers.marks.append(element);
+  }
+}
+
+/** All that the mark of a landmark shows. */
+function looksOf(cell, name, path, points, px, kind) {
+  const { data, chosen, pointed, known } = match;
+  const marked = name !== null && (name === chosen || name === pointed);
+  const link = marked ? (data.links ?? []).findIndex((other) => other.landmark === name) : -1;
+  return {
+    name, points, px, kind, marked,
+    chosen: name !== null && name === chosen,
+    wrong: name !== null && (store.state.problems ?? []).some((p) => p.landmark === name),
+    hue: known.get(name)?.kind === 'outline' ? known.get(name).hue : null,
+    label: marked ? (link >= 0 ? `${link + 1} ${name}` : name) : null,
+    // To the side where there is room.
+    before: points[0][0] > cell.view[0] + 0.55 * cell.view[2],
+  };
+}
+
+const classes = (base, looks) => [base, looks.kind, looks.marked && 'marked', looks.chosen && 'chosen', looks.wrong && 'wrong'].filter(Boolean).join(' ');
+
+function labelled({ points: [[x, y]], px, label, before }) {
+  if (label === null) return null;
+  const text = s('text', { class: 'name', x: x + 10 * px, y: y + 4 * px, 'font-size': 11 * px, 'stroke-width': 3 * px });
+  text.textContent = label;
+  return before ? set(text, { 'text-anchor': 'end', x: x - 10 * px }) : text;
+}
+
+function mark(looks) {
+  const { name, points: [[x, y]], px, kind, marked, hue } = looks;
+  const r = (marked || name === null ? 7 : 4) * px;
+  const shape = s('path', { d: `M${x} ${y - r}L${x + r} ${y}L${x} ${y + r}L${x - r} ${y}Z`, 'stroke-width': 1.5 * px });
+  if (hue) shape.style.setProperty(kind === 'given' ? 'fill' : 'stroke', hue);
+  return s('g', { class: classes('mark', looks), 'data-landmark': name ?? '' }, s('circle', { class: 'reach', cx: x, cy: y, r: 9 * px }), shape, s('title', {}, name ?? 'New landmark'), labelled(looks));
+}
+
+/** A line; its points can be taken hold of where it is looked at, or new. */
+function lineMark(looks) {
+  const { name, points, px, marked } = looks;
+  const along = points.map((p) => p.join(',')).join(' ');
+  const nodes = marked || name === null ? points.map(([x, y], k) => s('g', { 'data-node': k }, s('circle', { class: 'reach', cx: x, cy: y, r: 8 * px }), s('circle', { class: 'node', cx: x, cy: y, r: 4 * px, 'stroke-width': 1.5 * px }))) : [];
+  return s('g', { class: classes('line', looks), 'data-landmark': name ?? '' },
+    s('polyline', { class: 'reach', points: along, 'stroke-width': 12 * px }),
+    s('polyline', { class: 'stroke', points: along, 'stroke-width': 2 * px, ...(looks.kind === 'carried' ? { 'stroke-dasharray': `${5 * px} ${3 * px}` } : {}) }),
+    nodes, s('title', {}, name ?? 'New line'), labelled(looks));
+}
