@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use inbetween::blend::Stretch;
+use inbetween::export::svg_text;
 use inbetween::math::{Point, predicate};
 use inbetween::pipeline::{Posed, Workbench, checked_weights};
 use inbetween::scene::Provider;
@@ -144,6 +145,21 @@ pub(super) fn frame(request: &Request, session: &Session) -> Result<Response, Re
         bytes[start..start + 4].copy_from_slice(&length.to_le_bytes());
     }
     Ok(Response::binary(bytes))
+}
+
+/// `GET api/curves`: one frame as the command renders it, without what is behind it.
+pub(super) fn curves(request: &Request, session: &Session) -> Result<Response, Refusal> {
+    let shown = session.shown();
+    let bench = shown.stretched(stretch(request)?)?;
+    let all = asked_weights(request, &shown)?;
+    let [weights] = all.as_slice() else {
+        return Err(Refusal::bad("curves are of one frame"));
+    };
+    let posed = bench.posed(weights, sharpness(request)?)?;
+    let mut frame = shown.character()?.draw(&posed);
+    frame.background = None;
+    let text = svg_text(&frame).map_err(Refusal::failed)?;
+    Ok(Response::new("image/svg+xml", text))
 }
 
 /// With outlines to a tolerance, or without any.

@@ -115,6 +115,9 @@
 //! (premultiplied), times the layer's opacity. Textures `kind=colour` reach beyond the drawing's edge and are opaque there: the sum is
 //! to be cut by the silhouette (even-odd), as `inbetween frame` does it. Textures `kind=drawing` have the drawing's own alpha.
 //!
+//! `GET api/curves?at=X,Y` with the same options: the frame as `inbetween frame` renders it, in pixels of the frame and without a
+//! background, as SVG. It takes longer than `api/frame`: the first one makes the art, so it is for a probe that rests.
+//!
 //! # Meshes and pictures
 //!
 //! `GET api/puppet`:
@@ -122,6 +125,7 @@
 //! {"shape": 2, "pictures": 1,
 //!  "layers": [{"name": "walker", "poses": [0, 1, 2], "vertices": 512, "triangles": 930,
 //!              "texture_of": [0, 1, 2],                  // per pose of the layer
+//!              "curves": false,                          // whether its frames are curves when they are rendered
 //!              "textures": [{"pose": 0,                  // among the poses of the layer
 //!                            "colour": {"width": 640, "height": 720, "origin": [-1.5, 0], "scale": 1},
 //!                            "drawing": {"width": 320, ...}}, ...]}]}  // texel = (drawing unit - origin) * scale

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use inbetween::blend::Stretch;
-use inbetween::pipeline::{DrawingFiles, EditableWeights, PipelineError, Workbench, weight_provider};
+use inbetween::pipeline::{Character, DrawingFiles, EditableWeights, PipelineError, Workbench, weight_provider};
 use inbetween::scene::{Provider, Scene};
 use inbetween::texture::shared_texture_weights;
 use inbetween::weights::WeightProvider;
@@ -33,16 +33,29 @@ pub(crate) struct Shown {
     providers: [OnceLock<Result<Arc<dyn WeightProvider>, Problem>>; 2],
     /// The same with stretches blended in another way: linear, limited, logarithmic.
     stretched: [OnceLock<Result<Arc<Workbench>, Problem>>; 3],
+    /// With its art, for frames as they are rendered.
+    character: Arc<OnceLock<Result<Arc<Character>, Problem>>>,
 }
 
 impl Shown {
+    /// `before` is what it takes the place of.
     pub(crate) fn new(
         scene: Option<Arc<Scene>>,
         bench: Option<Arc<Workbench>>,
         problems: Vec<Problem>,
         revisions: Revisions,
+        before: &Self,
     ) -> Self {
+        let draws_alike = match (&bench, &before.bench) {
+            (Some(bench), Some(old)) => bench.draws_like(old),
+            _ => false,
+        };
         Self {
+            character: if draws_alike {
+                Arc::clone(&before.character)
+            } else {
+                Arc::default()
+            },
             scene,
             bench,
             problems,
@@ -83,6 +96,16 @@ impl Shown {
             made.map_err(|error| Problem::from(&error))
         };
         own.get_or_init(make).clone().map_err(Refusal::conflict)
+    }
+
+    /// The character, with its art.
+    pub(crate) fn character(&self) -> Result<Arc<Character>, Refusal> {
+        let bench = self.bench()?;
+        let make = || {
+            let made = bench.character().map(Arc::new);
+            made.map_err(|error| Problem::from(&error))
+        };
+        self.character.get_or_init(make).clone().map_err(Refusal::conflict)
     }
 
     /// The scene that frames are made of.

@@ -156,7 +156,7 @@ pub(super) fn puppet(session: &Session) -> Result<Response, Refusal> {
             "name": shape.name(), "poses": shape.poses(),
             "vertices": shape.mapping().poses.topology().vertex_count(),
             "triangles": shape.mapping().poses.topology().triangles().len(),
-            "texture_of": texture_of(bench, k),
+            "texture_of": texture_of(bench, k), "curves": bench.is_drawn_as_curves(k),
             "textures": (0..drawn.len()).map(texture).collect::<Vec<_>>(),
         })
     };

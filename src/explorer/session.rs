@@ -163,6 +163,7 @@ impl Session {
                     before.bench.clone(),
                     problems,
                     revisions,
+                    &before,
                 ));
                 state.file = file_state(document);
                 self.touch(&mut state);
@@ -219,7 +220,7 @@ impl Session {
         } else {
             before.problems.clone()
         };
-        state.shown = Arc::new(Shown::new(Some(scene), bench, problems, revisions));
+        state.shown = Arc::new(Shown::new(Some(scene), bench, problems, revisions, &before));
         state.file = file_state(document);
         self.touch(&mut state);
     }
@@ -424,7 +425,7 @@ impl Session {
             Err(problem) if is_newest => shown.2 = vec![problem],
             Err(_) => {}
         }
-        state.shown = Arc::new(Shown::new(shown.0, shown.1, shown.2, revisions));
+        state.shown = Arc::new(Shown::new(shown.0, shown.1, shown.2, revisions, &before));
         self.touch(&mut state);
     }
 

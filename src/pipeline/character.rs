@@ -2,6 +2,8 @@
 
 mod runtime;
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::art::LayerArt;
@@ -9,6 +11,7 @@ use super::figure::{self, Figure, Posed};
 use super::layer::{self, LayerShape, Part};
 use super::layout::placed;
 use super::{PipelineError, weight_provider, weighting};
+use crate::input::Drawing;
 use crate::render::drawing::{VectorFrame, VectorGroup, VectorNode};
 use crate::render::puppet::{Puppet, PuppetFrame};
 use crate::render::{Camera, Frame, PaintOptions, Painter};
@@ -19,8 +22,8 @@ use crate::weights::WeightProvider;
 #[derive(Debug)]
 pub struct Character {
     names: Vec<String>,
-    figure: Figure,
-    weights: Box<dyn WeightProvider>,
+    figure: Arc<Figure>,
+    weights: Arc<dyn WeightProvider>,
     /// What each layer is drawn with.
     art: Vec<LayerArt>,
     camera: Camera,
@@ -70,10 +73,23 @@ impl Character {
             Some(weights) => weights,
             None => weight_provider(scene, None)?,
         };
-        let figure = Figure::new(scene, shapes);
+        let figure = Arc::new(Figure::new(scene, shapes));
         let camera = figure::camera(&scene.animation, size, &figure, weights.as_ref())?;
+        Self::drawn(scene, figure, weights.into(), camera, samples, drawings, notes)
+    }
+
+    /// The figure with the art of its layers: `drawings` are those of each. The scene is laid out.
+    pub(super) fn drawn(
+        scene: &Scene,
+        figure: Arc<Figure>,
+        weights: Arc<dyn WeightProvider>,
+        camera: Camera,
+        samples: usize,
+        drawings: Vec<Vec<Drawing>>,
+        mut notes: Vec<String>,
+    ) -> Result<Self, PipelineError> {
         let mut art = Vec::new();
-        for ((part, shape), drawings) in parts.iter().zip(&figure.layers).zip(drawings) {
+        for ((part, shape), drawings) in layer::parts(scene).iter().zip(&figure.layers).zip(drawings) {
             art.push(LayerArt::new(part, shape, drawings, camera, samples, &mut notes)?);
         }
         Ok(Self {

@@ -24,12 +24,14 @@ use super::layer::{self, LayerShape, Part, PosedLayer};
 use super::layout::placed;
 use super::mapping::map_drawings_again;
 use super::{
-    EditableWeights, MappingReport, PipelineError, checked_weights, editable_weights, landmarks, read_drawings,
+    Character, EditableWeights, MappingReport, PipelineError, checked_weights, editable_weights, landmarks,
+    read_drawings,
 };
 use crate::input::Drawing;
 use crate::math::Point;
 use crate::render::Camera;
-use crate::scene::{DrawnSource, Layout, PoseSource, Scene};
+use crate::scene::{ArtChoice, DrawnSource, Layout, PoseSource, Scene};
+use crate::weights::WeightProvider;
 
 /// Whether the drawings' files are as they were.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -260,6 +262,40 @@ impl Workbench {
     pub fn posed(&self, weights: &[f64], sharpness: Option<f64>) -> Result<Posed, PipelineError> {
         let weights = checked_weights(weights, &self.scene.names())?;
         self.figure.posed_sharpened(&weights, sharpness)
+    }
+
+    /// The character of this shape, for frames of the animation's own size: what is left to make is its art.
+    ///
+    /// # Errors
+    /// [`PipelineError`] if a drawing cannot be prepared.
+    pub fn character(&self) -> Result<Character, PipelineError> {
+        let drawings = self
+            .layers
+            .iter()
+            .map(|layer| layer.drawings.as_ref().clone())
+            .collect();
+        let weights: Arc<dyn WeightProvider> = Arc::<EditableWeights>::clone(&self.weights);
+        let (figure, notes) = (Arc::clone(&self.figure), self.notes.clone());
+        Character::drawn(&self.scene, figure, weights, self.camera, 1, drawings, notes)
+    }
+
+    /// Whether frames of a layer are curves: its drawings are, and the scene wants them so.
+    #[must_use]
+    pub fn is_drawn_as_curves(&self, layer: usize) -> bool {
+        let scene = self.scene.layers.get(layer).map_or(&self.scene, |layer| &layer.scene);
+        scene.art == ArtChoice::Curves && self.drawings(layer).iter().all(|drawing| drawing.art.is_some())
+    }
+
+    /// Whether both have the same shapes, drawn with the same art; their weights may differ.
+    #[must_use]
+    pub fn draws_like(&self, other: &Self) -> bool {
+        let art = |scene: &Scene| (scene.art, scene.colour_blend);
+        let layers = |scene: &Scene| scene.layers.iter().map(|layer| art(&layer.scene)).collect::<Vec<_>>();
+        self.has_figure_of(other)
+            && self.has_pictures_of(other)
+            && self.camera == other.camera
+            && art(&self.scene) == art(&other.scene)
+            && layers(&self.scene) == layers(&other.scene)
     }
 
     /// The blended outlines of a layer: outer ring first.

@@ -157,7 +157,11 @@ export async function conflict(tools) {
     await page.waitForFunction(async () => (await (await fetch('api/state')).json()).dragging);
     writeFileSync(scene, theirs);
     await page.mouse.up();
-    await page.waitForFunction(async () => (await (await fetch('api/state')).json()).conflict, null, { timeout: 10000 });
+    // The last of the drag has arrived, too.
+    await page.waitForFunction(async () => {
+      const now = await (await fetch('api/state')).json();
+      return now.conflict && !now.dragging;
+    }, null, { timeout: 10000 });
     await page.waitForSelector('.banner:not(.hidden)');
   };
   await meanwhile();

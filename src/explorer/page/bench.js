@@ -8,7 +8,7 @@ import { Drag, look, moveTo, on, store } from './state.js';
 const REQUESTS = 300;
 const DRAWINGS = 60;
 const SECONDS = 5;
-const LANDMARKS = 16;
+const LANDMARKS = 12;
 
 const sorted = (values) => values.slice().sort((a, b) => a - b);
 const quantile = (values, part) => sorted(values)[Math.min(values.length - 1, Math.floor(part * values.length))];

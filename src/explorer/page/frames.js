@@ -23,36 +23,38 @@ async function ask() {
   asking = true;
   wanted = false;
   const place = store.place.slice();
-  const started = performance.now();
+  let frame = null;
   try {
-    if (!(store.state.revisions.shape > 0)) await askWeights(place);
-    else await askFrame(place, started);
+    frame = store.state.revisions.shape > 0 ? await askFrame(place) : await askWeights(place);
   } catch (error) {
     if (!(error instanceof Refused)) await new Promise((wait) => setTimeout(wait, 500));
   }
   asking = false;
+  // The next one is on its way while this one is drawn.
   if (wanted) ask();
-  else waiting.splice(0).forEach((done) => done());
+  // A frame of meshes that are not here yet would be drawn with the wrong triangles; when they are, another one is asked for.
+  if (frame && (frame.shape === 0 || frame.shape === store.puppet?.shape)) {
+    store.frame = frame;
+    emit('frame');
+  }
+  if (!wanted && !asking) waiting.splice(0).forEach((done) => done());
 }
 
-async function askFrame(place, started) {
+async function askFrame(place) {
+  const started = performance.now();
   asked = store.pixel;
   const words = await getWords('frame', { at: place, ...outlines(), ...instead() });
   roundTrips.push(performance.now() - started);
   if (roundTrips.length > 240) roundTrips.shift();
   const [frame] = readFrames(words);
   frame.place = place;
-  // A frame of meshes that are not here yet would be drawn with the wrong triangles; when they are, another one is asked for.
-  if (frame.shape !== store.puppet?.shape) return;
-  store.frame = frame;
-  emit('frame');
+  return frame;
 }
 
 /** Of a scene without a mesh the weights alone. */
 async function askWeights(place) {
   const [{ weights, texture_weights: textureWeights }] = await getJson('weights', { at: place });
-  store.frame = { place, weights, textureWeights, shape: 0, revision: store.state.revisions.weights, inverted: 0, order: [], layers: [] };
-  emit('frame');
+  return { place, weights, textureWeights, shape: 0, revision: store.state.revisions.weights, inverted: 0, order: [], layers: [] };
 }
 
 /** Wants the frame of where the probe is now. */

@@ -83,11 +83,11 @@ function buildScene() {
   panels.scene.replaceChildren(...children.filter(Boolean));
 }
 
-/** SVG drawings can be carried as curves, which this page cannot show. */
+/** SVG drawings can be carried as curves, which are shown where the probe rests. */
 function drawingRow() {
   if (!store.scene.poses.some((pose) => /\.svg$/i.test(pose.source ?? ''))) return null;
   return [row('Drawing', live(segments('Drawing', [['curves', 'Curves'], ['pixels', 'Pixels']], () => store.scene.texture?.drawing, (v) => setting('texture', 'drawing', v)))),
-    h('p', { class: 'faint small' }, 'Frames that are rendered can carry curves; the picture here is of pixels.')];
+    h('p', { class: 'faint small' }, 'Curves are shown where the probe rests; while it moves, pixels.')];
 }
 
 // The pose that is looked at.

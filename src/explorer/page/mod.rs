@@ -30,6 +30,7 @@ const MODULES: &[PageFile] = modules![
     "bars.js",
     "bench.js",
     "controls.js",
+    "curves.js",
     "dom.js",
     "export.js",
     "frames.js",

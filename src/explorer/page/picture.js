@@ -1,5 +1,6 @@
 // The picture: the frame where the probe is, with what can be laid under and over it.
 import { byId, clamp, h, onceAFrame, short } from './dom.js';
+import { curves, placeCurves } from './curves.js';
 import { emit, on, store } from './state.js';
 import { framesOf } from './frames.js';
 import { extent, PuppetPainter } from './puppet.js';
@@ -10,7 +11,7 @@ const paper = h('div', { class: 'paper', 'aria-hidden': 'true' });
 const canvas = h('canvas', { class: 'picture', id: 'picture', role: 'img', 'aria-label': 'The drawing at the probe' });
 const note = h('p', { class: 'note' });
 const badge = h('button', { type: 'button', class: 'badge hidden', title: 'Show the mesh' });
-stage.append(paper, canvas, note, badge);
+stage.append(paper, canvas, curves, note, badge);
 attachHandles(stage);
 
 const painter = new PuppetPainter(canvas);
@@ -91,6 +92,7 @@ function draw() {
   paper.style.transform = `translate(${corner.x}px, ${corner.y}px)`;
   paper.style.width = `${w * corner.scale}px`;
   paper.style.height = `${h_ * corner.scale}px`;
+  placeCurves(corner, [w, h_]);
   const background = store.scene?.animation?.background;
   paper.style.background = background && background !== 'transparent' ? background : '';
   paper.classList.toggle('hidden', !store.frame?.layers.length);
