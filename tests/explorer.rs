@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use inbetween::export::svg_text;
 use inbetween::math::Point;
 use inbetween::pipeline::Character;
 use inbetween::scene::Scene;
@@ -265,12 +266,39 @@ fn frames_are_those_of_the_command() {
                 let textures = floats(&words[at + 6 + 2 * v + p..][..k]);
                 assert!((textures.iter().sum::<f32>() - 1.0).abs() < 1e-5);
                 at += 6 + 2 * v + p + k + t.div_ceil(32);
+                let outlines = at;
                 for _ in 0..r {
                     at += 1 + 2 * words[at] as usize;
                 }
+                if layers == 1 {
+                    // With thin outlines it differs in them alone.
+                    let thin = explorer
+                        .get(&format!("api/frame?at={text}&silhouette=1&tolerance=0.5"))
+                        .words();
+                    assert_eq!(thin[6..outlines], words[6..outlines]);
+                    assert!(2 * (thin.len() - outlines) < words.len() - outlines);
+                }
             }
             assert_eq!(at, words.len());
+            let curves = explorer.get(&format!("api/curves?at={text}"));
+            let mut frame = character.draw(&posed);
+            frame.background = None;
+            assert_eq!(
+                String::from_utf8(curves.body).expect("text"),
+                svg_text(&frame).expect("a frame")
+            );
         }
+        let puppet = explorer.get("api/puppet").json();
+        assert_eq!(puppet["layers"][0]["curves"], json!(name == "bear"));
+        // Every pose by itself, one after the other.
+        let alone = explorer.get("api/frame?poses=all").words();
+        let mut at = 0;
+        for pose in 0..scene.poses.len() {
+            let weights = floats(&alone[at + 6..][..scene.poses.len()]);
+            assert!((0..weights.len()).all(|k| weights[k] == f32::from(u8::from(k == pose))));
+            at += alone[at] as usize / 4;
+        }
+        assert_eq!(at, alone.len());
         let camera = &explorer.get("api/scene").json()["camera"];
         let origin = character.camera().to_pixels(Point::zeros());
         assert_eq!(
@@ -288,6 +316,10 @@ fn frames_are_those_of_the_command() {
         assert_eq!(explorer.get("api/frame?at=nowhere").status, 400);
         assert_eq!(explorer.get("api/frame?at=1,2,3,4,5").status, 400);
         assert_eq!(explorer.get("api/frame").status, 400);
+        assert_eq!(
+            explorer.get("api/frame?at=0.1,0.1&silhouette=1&tolerance=-1").status,
+            400
+        );
     }
 }
 

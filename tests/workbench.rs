@@ -78,3 +78,38 @@ fn edits_repeat_what_they_concern_and_nothing_else() {
     inbetween::weights::WeightProvider::weights(bench.weights().as_ref(), &[0.3, 0.4], &mut weights).expect("weights");
     assert_eq!(bench.posed(&weights, None).expect("posed"), posed);
 }
+
+#[test]
+fn its_character_draws_what_a_new_one_draws() {
+    for name in ["clown", "bear"] {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("data/{name}/scene.toml"));
+        let scene = Scene::open(&file).expect("a scene");
+        let bench = Workbench::new(&scene).expect("a workbench");
+        let own = bench.character().expect("a character");
+        let size = scene.animation.size.map(|side| side as usize);
+        let anew = Character::new(&scene, size).expect("a character");
+        let place = vec![0.3; scene.dimension()];
+        assert_eq!(
+            own.frame_at(&place).expect("a frame"),
+            anew.frame_at(&place).expect("a frame")
+        );
+        assert_eq!(own.notes(), anew.notes());
+        assert_eq!(bench.is_drawn_as_curves(0), name == "bear");
+    }
+}
+
+#[test]
+fn edits_that_change_no_art_leave_the_character() {
+    let text = std::fs::read_to_string(file()).expect("readable");
+    let bench = Workbench::new(&scene(&text)).expect("a workbench");
+    let moved = scene(&text.replace("at = [1.0, 0.0]", "at = [1.25, 0.0]"));
+    let weights = inbetween::pipeline::editable_weights(&moved, None).expect("weights");
+    assert!(
+        bench
+            .reweighted(&moved, std::sync::Arc::new(weights))
+            .draws_like(&bench)
+    );
+    let light = text.replace("[texture]", "[texture]\nblending = \"linear\"");
+    let other = bench.edited(&scene(&light), DrawingFiles::Unchanged).expect("edited");
+    assert!(!other.draws_like(&bench));
+}
