@@ -148,8 +148,8 @@ pub(super) fn puppet(session: &Session) -> Result<Response, Refusal> {
         let texture = |index: usize| {
             json!({
                 "pose": drawn[index],
-                "colour": session.picture(&shown, k, index, Kind::Colour).0,
-                "drawing": session.picture(&shown, k, index, Kind::Drawing).0,
+                "colour": session.pictures.picture(&shown, k, index, Kind::Colour).0,
+                "drawing": session.pictures.picture(&shown, k, index, Kind::Drawing).0,
             })
         };
         json!({
@@ -205,7 +205,7 @@ pub(super) fn texture(request: &Request, session: &Session) -> Result<Response, 
         Some("drawing") => Kind::Drawing,
         Some(other) => return Err(Refusal::bad(format!("kind '{other}' is neither colour nor drawing"))),
     };
-    let (_, png) = session.picture(&shown, layer, index, kind);
+    let (_, png) = session.pictures.picture(&shown, layer, index, kind);
     Ok(Response {
         may_be_kept: request.value("v").is_some(),
         ..Response::new("image/png", png?.as_ref().clone())

@@ -5,13 +5,12 @@
 //!
 //! Locks are taken in this order: document, state, pictures.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use inbetween::pipeline::{DrawingFiles, Workbench};
-use inbetween::scene::{Layout, Provider, Scene, WeightRange};
+use inbetween::scene::{Layout, Scene};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -20,14 +19,9 @@ use super::edit::{self, Context, Op};
 use super::export::Jobs;
 use super::handles::Draggers;
 use super::model::Shown;
-use super::pictures::{self, Kind};
+use super::picture_cache::PictureCache;
 use super::problem::{Problem, Refusal};
-
-/// A picture's place and its file.
-type EncodedPicture = (Value, Result<Arc<Vec<u8>>, Refusal>);
-
-/// By layer, drawing and kind.
-type EncodedPictures = BTreeMap<(usize, usize, bool), EncodedPicture>;
+use super::reweighting::{Only, reweighted, with_places_of};
 
 /// The state of an explored scene.
 #[derive(Debug)]
@@ -39,8 +33,8 @@ pub(crate) struct Session {
     changed: Condvar,
     /// Told whenever there is something to compute.
     wanted: Condvar,
-    /// Those that were asked for, with the pictures' revision that they are of.
-    pictures: Mutex<(u64, EncodedPictures)>,
+    /// Those that were asked for.
+    pub(super) pictures: PictureCache,
     /// Handles that are being dragged.
     pub(super) draggers: Draggers,
     /// The export.
@@ -119,7 +113,7 @@ impl Session {
             }),
             changed: Condvar::new(),
             wanted: Condvar::new(),
-            pictures: Mutex::default(),
+            pictures: PictureCache::default(),
             draggers: Draggers::default(),
             jobs: Jobs::default(),
         };
@@ -428,83 +422,6 @@ impl Session {
         state.shown = Arc::new(Shown::new(shown.0, shown.1, shown.2, revisions, &before));
         self.touch(&mut state);
     }
-
-    /// The picture of a layer's drawing: where it lies, and its PNG file. Made once.
-    pub(super) fn picture(&self, shown: &Shown, layer: usize, index: usize, kind: Kind) -> EncodedPicture {
-        let revision = shown.revisions.pictures;
-        let key = (layer, index, kind == Kind::Colour);
-        {
-            let mut kept = self.pictures.lock().unwrap_or_else(PoisonError::into_inner);
-            if kept.0 < revision {
-                *kept = (revision, BTreeMap::new());
-            }
-            if let Some(picture) = kept.1.get(&key).filter(|_| kept.0 == revision) {
-                return picture.clone();
-            }
-        }
-        let Some(bench) = &shown.bench else {
-            return (Value::Null, Err(Refusal::failed("there is no drawing")));
-        };
-        let placed = pictures::picture(bench, layer, index, kind);
-        let picture = (placed.place(), pictures::png(&placed.texture).map(Arc::new));
-        let mut kept = self.pictures.lock().unwrap_or_else(PoisonError::into_inner);
-        if kept.0 == revision {
-            kept.1.insert(key, picture.clone());
-        }
-        picture
-    }
-}
-
-/// What changed besides places.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Only {
-    /// Nothing: what is shown is complete.
-    Weights,
-    /// Something that has to be computed.
-    More,
-}
-
-/// The same shapes with the weights of `scene`, if these follow from moving poses, which takes a millisecond.
-fn reweighted(bench: &Workbench, scene: &Scene) -> Option<(Workbench, Only)> {
-    let old = bench.scene();
-    let is_quick = match scene.pose_space.provider {
-        Provider::Rbf => true,
-        Provider::Biharmonic => scene.pose_space.range == WeightRange::Free && scene.pseudo_poses.is_empty(),
-    };
-    let is_alike = is_quick
-        && old.pose_space == scene.pose_space
-        && old.pseudo_poses == scene.pseudo_poses
-        && old.names() == scene.names()
-        && old.dimension() == scene.dimension();
-    if !is_alike {
-        return None;
-    }
-    let moved: Vec<usize> = (0..scene.poses.len())
-        .filter(|&k| old.poses[k].at != scene.poses[k].at)
-        .collect();
-    if moved.is_empty() {
-        return None;
-    }
-    let mut weights = bench.weights().as_ref().clone();
-    for pose in moved {
-        weights.move_pose(pose, &scene.poses[pose].at).ok()?;
-    }
-    let moved = with_places_of(old, scene);
-    let only = if moved == *scene { Only::Weights } else { Only::More };
-    Some((bench.reweighted(&moved, Arc::new(weights)), only))
-}
-
-/// A scene with the places, and what follows from them, of another with as many poses.
-fn with_places_of(scene: &Scene, other: &Scene) -> Scene {
-    let mut scene = scene.clone();
-    for (pose, other) in scene.poses.iter_mut().zip(&other.poses) {
-        pose.at.clone_from(&other.at);
-    }
-    for (layer, other) in scene.layers.iter_mut().zip(&other.layers) {
-        layer.scene = with_places_of(&layer.scene, &other.scene);
-    }
-    scene.animation = other.animation.clone();
-    scene
 }
 
 fn file_state(document: &Document) -> FileState {

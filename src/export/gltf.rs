@@ -282,38 +282,11 @@ fn in_units(p: Point) -> [f32; 3] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::gltf_buffer::testing::GltfRead;
     use super::super::puppet_motion::testing::turning;
     use super::*;
 
-    struct Read {
-        json: Value,
-        binary: Vec<u8>,
-    }
-
-    impl Read {
-        fn new(bytes: &[u8]) -> Self {
-            let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize;
-            assert_eq!((&bytes[..4], word(4), word(8)), (b"glTF".as_slice(), 2, bytes.len()));
-            let text = 20..20 + word(12);
-            let json = serde_json::from_slice(&bytes[text.clone()]).expect("JSON");
-            assert_eq!(word(text.end) + text.end + 8, bytes.len());
-            Self {
-                json,
-                binary: bytes[text.end + 8..].to_vec(),
-            }
-        }
-
-        fn floats(&self, accessor: &Value) -> Vec<f32> {
-            let accessor = &self.json["accessors"][accessor.as_u64().expect("an index") as usize];
-            let view = &self.json["bufferViews"][accessor["bufferView"].as_u64().expect("an index") as usize];
-            let start = view["byteOffset"].as_u64().expect("a place") as usize;
-            let length = view["byteLength"].as_u64().expect("a length") as usize;
-            self.binary[start..start + length]
-                .chunks_exact(4)
-                .map(|b| f32::from_le_bytes(b.try_into().expect("four bytes")))
-                .collect()
-        }
-
+    impl GltfRead {
         /// The sampler of a node's channel: its times and values.
         fn channel(&self, node: &str, path: &str) -> Option<(Vec<f32>, Vec<f32>)> {
             let animation = &self.json["animations"][0];
@@ -348,7 +321,7 @@ mod tests {
         let turning = turning();
         for max_error in [0.0, 0.5, 3.0] {
             let (bytes, report) = gltf_bytes(&turning.motion(max_error)).expect("a file");
-            let file = Read::new(&bytes);
+            let file = GltfRead::new(&bytes);
             let primitive = &file.json["meshes"][0]["primitives"][0];
             let base = file.floats(&primitive["attributes"]["POSITION"]);
             let targets: Vec<Vec<f32>> = primitive["targets"]
@@ -360,7 +333,7 @@ mod tests {
             let (times, weights) = file.channel("wheel red", "weights").expect("an animation");
             let mut worst: f64 = 0.0;
             for (time, frame) in turning.times.iter().zip(&turning.frames) {
-                let weights = Read::value_at(&times, &weights, *time as f32);
+                let weights = GltfRead::value_at(&times, &weights, *time as f32);
                 for (v, p) in frame.layers[0].positions.iter().enumerate() {
                     let place = |c: usize| {
                         let moved: f32 = targets.iter().zip(&weights).map(|(t, w)| t[3 * v + c] * w).sum();
@@ -382,7 +355,7 @@ mod tests {
     #[test]
     fn one_texture_a_layer_is_shown_and_layers_change_places() {
         let turning = turning();
-        let file = Read::new(&gltf_bytes(&turning.motion(1.0)).expect("a file").0);
+        let file = GltfRead::new(&gltf_bytes(&turning.motion(1.0)).expect("a file").0);
         let (times, scales) = file.channel("wheel blue", "scale").expect("an animation");
         assert_eq!(scales, [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
         assert!(times[0] == 0.0 && (1.0..1.1).contains(&times[1]), "{times:?}");
@@ -410,7 +383,7 @@ mod tests {
                 layer.opacity = 0.0;
             }
         }
-        let file = Read::new(&gltf_bytes(&turning.motion(1.0)).expect("a file").0);
+        let file = GltfRead::new(&gltf_bytes(&turning.motion(1.0)).expect("a file").0);
         assert_eq!(file.json.get("meshes"), None);
     }
 }

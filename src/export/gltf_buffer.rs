@@ -160,3 +160,39 @@ pub(super) fn container(document: &Value, mut binary: Vec<u8>) -> Result<Vec<u8>
     }
     Ok(bytes)
 }
+
+#[cfg(test)]
+pub(in crate::export) mod testing {
+    use serde_json::Value;
+
+    /// A `.glb` file, read again.
+    pub(in crate::export) struct GltfRead {
+        pub(in crate::export) json: Value,
+        pub(in crate::export) binary: Vec<u8>,
+    }
+
+    impl GltfRead {
+        pub(in crate::export) fn new(bytes: &[u8]) -> Self {
+            let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize;
+            assert_eq!((&bytes[..4], word(4), word(8)), (b"glTF".as_slice(), 2, bytes.len()));
+            let text = 20..20 + word(12);
+            assert_eq!(word(text.end) + text.end + 8, bytes.len());
+            Self {
+                json: serde_json::from_slice(&bytes[text.clone()]).expect("JSON"),
+                binary: bytes[text.end + 8..].to_vec(),
+            }
+        }
+
+        pub(in crate::export) fn bytes(&self, accessor: &Value) -> &[u8] {
+            let accessor = &self.json["accessors"][accessor.as_u64().expect("an index") as usize];
+            let view = &self.json["bufferViews"][accessor["bufferView"].as_u64().expect("an index") as usize];
+            let start = view["byteOffset"].as_u64().expect("a place") as usize;
+            &self.binary[start..start + view["byteLength"].as_u64().expect("a length") as usize]
+        }
+
+        pub(in crate::export) fn floats(&self, accessor: &Value) -> Vec<f32> {
+            let chunks = self.bytes(accessor).as_chunks::<4>().0.iter();
+            chunks.map(|b| f32::from_le_bytes(*b)).collect()
+        }
+    }
+}

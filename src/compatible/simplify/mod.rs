@@ -25,6 +25,7 @@
 //! diagonal); a landmark is a vertex exactly where it is given, in every pose. Cost O(n log n) in the number of outline points n, for outlines whose edges are
 //! of similar length. Limit: a corner next to a landmark is a vertex of its own, however near it is; the count of vertices follows from the tolerance, it cannot be asked for.
 
+mod alone;
 mod collapse;
 mod edge_grid;
 mod tighten;
@@ -41,8 +42,9 @@ use super::CompatibleMesh;
 use crate::matching::Correspondence;
 use crate::math::{Point, point};
 use crate::outline::{Outline, OutlineError, Ring, RingError};
-use collapse::{Collapser, OriginalRing, PoseOriginal};
-use tuples::{Pin, TupleRing};
+use alone::PoseAlone;
+use collapse::{Collapser, PoseOriginal};
+use tuples::TupleRing;
 
 /// What the simplification may do.
 #[derive(Debug, Clone, PartialEq)]
@@ -135,18 +137,8 @@ const PRELIMINARY_SHARE: f64 = 0.05;
 /// well below any tolerance in use.
 const MERGE_DISTANCE: f64 = 1e-3;
 
-/// A shape is thin if its diagonal exceeds this many of its mean half-widths; its deviation is then measured against
-/// those instead, or the polygon would be half as wide again as the shape. With the default tolerance it may deviate by
-/// 0.32 half-widths.
-const THIN_SHAPE: f64 = 16.0;
-
 /// Variations multiply the cost of a collapse, a squared deviation, by up to this, or divide it.
 const LARGEST_WEIGHT: f64 = 4.0;
-
-/// Area over perimeter: half the width of a long strip, a quarter of the diameter of a disc.
-fn mean_half_width(outline: &Outline) -> f64 {
-    outline.area() / outline.rings().iter().map(Ring::perimeter).sum::<f64>()
-}
 
 /// Simplifies N outlines to N polygons with corresponding vertices that enclose them.
 ///
@@ -224,17 +216,6 @@ pub struct Simplification {
     variations: usize,
 }
 
-/// What a simplification makes of each pose without regard to the others.
-#[derive(Debug)]
-struct PoseAlone {
-    outline: Outline,
-    original: PoseOriginal,
-    /// The landmarks on its outer ring.
-    pins: Vec<Pin>,
-    /// Its rings, simplified alone.
-    rings: Vec<TupleRing>,
-}
-
 /// In which order edges collapse, and what is left then.
 #[derive(Debug, Clone)]
 struct Order {
@@ -303,7 +284,7 @@ impl Simplification {
             .par_iter()
             .enumerate()
             .map(|(pose, outline)| {
-                let pins = pins(landmarks, pose);
+                let pins = alone::pins(landmarks, pose);
                 let kept = before
                     .get(pose)
                     .filter(|kept| kept.pins == pins && kept.outline == *outline);
@@ -448,37 +429,4 @@ fn deviation(polygon: &Outline, outline: &Outline) -> f64 {
         }
     }
     farthest / outline.diagonal()
-}
-
-/// The landmarks of one pose: `landmarks` are #landmarks x #poses.
-fn pins(landmarks: &[Vec<f64>], pose: usize) -> Vec<Pin> {
-    let numbered = landmarks.iter().enumerate();
-    numbered
-        .filter_map(|(landmark, row)| {
-            let &parameter = row.get(pose)?;
-            Some(Pin { landmark, parameter })
-        })
-        .collect()
-}
-
-impl PoseAlone {
-    /// An outline simplified alone, to `tolerance` of its size.
-    fn new(outline: &Outline, pins: Vec<Pin>, tolerance: f64) -> Self {
-        let original = PoseOriginal {
-            rings: outline.rings().iter().map(OriginalRing::new).collect(),
-            size: outline.diagonal().min(THIN_SHAPE * mean_half_width(outline)),
-        };
-        let single = |(ring, points): (usize, &Ring)| TupleRing::single(points, if ring == 0 { &pins } else { &[] });
-        let single = outline.rings().iter().enumerate().map(single).collect();
-        let mut rings = Collapser::new(single, &[&original], tolerance).run();
-        for ring in &mut rings {
-            ring.tuples.sort_by(|a, b| a.parameters[0].total_cmp(&b.parameters[0]));
-        }
-        Self {
-            outline: outline.clone(),
-            original,
-            pins,
-            rings,
-        }
-    }
 }

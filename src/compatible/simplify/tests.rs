@@ -268,3 +268,20 @@ fn a_variation_that_is_kept_is_what_comes_next() {
     }
     assert_eq!(&again.polygons().expect("simplified"), last);
 }
+
+#[test]
+fn what_has_not_changed_is_taken_over_and_what_has_is_not() {
+    let outlines = [0.0, 1.5, 3.0].map(|phase| wavy(200, 5, 0.4, phase));
+    let matching = [Correspondence::identity(3, 200)];
+    let options = SimplifyOptions::default();
+    let landmarks = |second: f64| vec![vec![0.1, 0.1, 0.1], vec![0.5, second, 0.5]];
+    let before = Simplification::new(&outlines, &matching, &landmarks(0.5), &options).expect("simplified");
+    let mut others = outlines.clone();
+    others[2] = wavy(200, 5, 0.3, 2.0);
+    for (outlines, second, tolerance) in [(&outlines, 0.53, 0.02), (&others, 0.5, 0.02), (&outlines, 0.5, 0.01)] {
+        let options = SimplifyOptions::default().with_tolerance(tolerance);
+        let again = before.again(outlines, &matching, &landmarks(second), &options);
+        let anew = simplify(outlines, &matching, &landmarks(second), &options).expect("simplified");
+        assert_eq!(again.expect("simplified").polygons().expect("simplified"), anew);
+    }
+}

@@ -139,7 +139,7 @@ function point(target) {
   match.pointed = now;
   draw();
 }
-root.addEventListener('pointerover', (event) => event.buttons === 0 && point(event.target));
+root.addEventListener('pointerover', (event) => event.buttons === 0 && point(match.fresh?.open ? null : event.target));
 root.addEventListener('pointerleave', () => point(null));
 
 on('view', (changes) => {

@@ -1,35 +1,10 @@
-use serde_json::Value;
-
+use super::super::gltf_buffer::testing::GltfRead;
 use super::super::shape_keys::ShapeState;
 use super::*;
 use crate::shape3d::{Form, FormTopology, Joint, Skeleton, Skin, Turn};
 
-struct Read {
-    json: Value,
-    binary: Vec<u8>,
-}
-
-impl Read {
-    fn new(bytes: &[u8]) -> Self {
-        let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize;
-        let text = 20..20 + word(12);
-        Self {
-            json: serde_json::from_slice(&bytes[text.clone()]).expect("JSON"),
-            binary: bytes[text.end + 8..].to_vec(),
-        }
-    }
-
-    fn bytes(&self, accessor: &Value) -> &[u8] {
-        let accessor = &self.json["accessors"][accessor.as_u64().expect("an index") as usize];
-        let view = &self.json["bufferViews"][accessor["bufferView"].as_u64().expect("an index") as usize];
-        let start = view["byteOffset"].as_u64().expect("a place") as usize;
-        &self.binary[start..start + view["byteLength"].as_u64().expect("a length") as usize]
-    }
-
-    fn floats(&self, accessor: &Value) -> Vec<f64> {
-        let chunks = self.bytes(accessor).as_chunks::<4>().0.iter();
-        chunks.map(|b| f64::from(f32::from_le_bytes(*b))).collect()
-    }
+fn doubles(file: &GltfRead, accessor: &serde_json::Value) -> Vec<f64> {
+    file.floats(accessor).into_iter().map(f64::from).collect()
 }
 
 /// A bar of two quadrangles, straight, bent and fat; six joints in a row, all of which every vertex follows.
@@ -135,16 +110,16 @@ fn targets_and_weights_give_the_blend() {
     let bar = Bar::new().without_joints();
     let (bytes, report) = shape_gltf_bytes(&bar.motion(None, 0.0)).expect("a file");
     assert_eq!((report.keys, report.worst), (49, 0.0));
-    let file = Read::new(&bytes);
+    let file = GltfRead::new(&bytes);
     let mesh = &file.json["meshes"][0];
     assert_eq!(mesh["extras"]["targetNames"], json!(["bent", "fat"]));
     let primitive = &mesh["primitives"][0];
-    let base = file.floats(&primitive["attributes"]["POSITION"]);
+    let base = doubles(&file, &primitive["attributes"]["POSITION"]);
     assert_eq!(base.len(), 3 * 8, "two vertices are doubled at the seam");
-    let target = |k: usize| file.floats(&primitive["targets"][k]["POSITION"]);
+    let target = |k: usize| doubles(&file, &primitive["targets"][k]["POSITION"]);
     let targets = [target(0), target(1)];
     let sampler = &file.json["animations"][0]["samplers"][0];
-    let weights = file.floats(&sampler["output"]);
+    let weights = doubles(&file, &sampler["output"]);
     // The vertices in the order of the triangles.
     let order = [0, 1, 4, 3, 1, 2, 5, 4];
     for (k, state) in bar.states.iter().enumerate() {
@@ -160,7 +135,7 @@ fn targets_and_weights_give_the_blend() {
         }
     }
     // Rows of a texture are counted from the top.
-    let places = file.floats(&primitive["attributes"]["TEXCOORD_0"]);
+    let places = doubles(&file, &primitive["attributes"]["TEXCOORD_0"]);
     assert_eq!(&places[2..4], [f64::from(1.0f32 / 7.0), 0.5]);
 }
 
@@ -186,9 +161,9 @@ fn keys_hold_the_tolerance_and_none_is_too_many() {
 #[test]
 fn every_influence_is_written_four_a_set() {
     let bar = Bar::new();
-    let file = Read::new(&shape_gltf_bytes(&bar.motion(Some(&bar.rig), 0.01)).expect("a file").0);
+    let file = GltfRead::new(&shape_gltf_bytes(&bar.motion(Some(&bar.rig), 0.01)).expect("a file").0);
     let attributes = &file.json["meshes"][0]["primitives"][0]["attributes"];
-    let [heavy, light] = ["WEIGHTS_0", "WEIGHTS_1"].map(|key| file.floats(&attributes[key]));
+    let [heavy, light] = ["WEIGHTS_0", "WEIGHTS_1"].map(|key| doubles(&file, &attributes[key]));
     for v in 0..8 {
         let sum: f64 = heavy[4 * v..4 * v + 4].iter().chain(&light[4 * v..4 * v + 4]).sum();
         assert!((sum - 1.0).abs() < 1e-6);
@@ -196,7 +171,7 @@ fn every_influence_is_written_four_a_set() {
         assert_eq!(&light[4 * v + 2..4 * v + 4], [0.0, 0.0]);
     }
     assert_eq!(file.json["skins"][0]["joints"].as_array().map(Vec::len), Some(6));
-    let matrices = file.floats(&file.json["skins"][0]["inverseBindMatrices"]);
+    let matrices = doubles(&file, &file.json["skins"][0]["inverseBindMatrices"]);
     assert_eq!(matrices[16 * 5 + 12], f64::from(-2.0f32));
     // A joint hangs on its parent, at its distance from it.
     let node = |name: &str| {
@@ -213,13 +188,13 @@ fn one_form_at_one_time_is_a_file_too() {
     let mut bar = Bar::new().without_joints();
     bar.times.truncate(1);
     bar.states.truncate(1);
-    let file = Read::new(&shape_gltf_bytes(&bar.motion(None, 0.0)).expect("a file").0);
+    let file = GltfRead::new(&shape_gltf_bytes(&bar.motion(None, 0.0)).expect("a file").0);
     assert_eq!(file.json.get("animations"), None);
     bar.forms.truncate(1);
     bar.normals.truncate(1);
     bar.examples.truncate(1);
     bar.states[0].weights.truncate(1);
-    let file = Read::new(&shape_gltf_bytes(&bar.motion(None, 0.0)).expect("a file").0);
+    let file = GltfRead::new(&shape_gltf_bytes(&bar.motion(None, 0.0)).expect("a file").0);
     assert_eq!(file.json["meshes"][0]["primitives"][0].get("targets"), None);
     bar.states.clear();
     assert!(shape_gltf_bytes(&bar.motion(None, 0.0)).is_err());
