@@ -15,17 +15,6 @@ use super::session::Session;
 /// Lines of what a render has to say that are kept.
 const MOST_LINES: usize = 20;
 
-/// The export that runs, if any.
-#[derive(Debug, Default)]
-pub(super) struct Jobs(Mutex<Running>);
-
-#[derive(Debug, Default)]
-struct Running {
-    count: u64,
-    child: Option<Arc<Mutex<Child>>>,
-    is_cancelled: bool,
-}
-
 /// What is asked for.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -15,6 +15,7 @@ use super::model::Shown;
 use super::problem::Refusal;
 use super::session::Session;
 use super::thinning::thinned;
+use super::wire::Words;
 
 /// Frames that one request may ask for.
 const MOST_FRAMES: usize = 256;
@@ -198,42 +199,4 @@ fn write_layers(block: &mut Words<'_>, bench: &Workbench, posed: &Posed, outline
 /// Whether a triangle is turned over or has no area.
 pub(super) fn is_inverted(positions: &[Point], [a, b, c]: [usize; 3]) -> bool {
     !predicate::is_positive(positions[a], positions[b], positions[c])
-}
-
-/// Little-endian numbers of four bytes.
-pub(super) struct Words<'a>(pub(super) &'a mut Vec<u8>);
-
-impl Words<'_> {
-    pub(super) fn u32(&mut self, number: usize) {
-        self.0
-            .extend_from_slice(&u32::try_from(number).unwrap_or(u32::MAX).to_le_bytes());
-    }
-
-    pub(super) fn f32(&mut self, number: f64) {
-        self.0.extend_from_slice(&(number as f32).to_le_bytes());
-    }
-
-    pub(super) fn f32s(&mut self, numbers: &[f64]) {
-        for number in numbers {
-            self.f32(*number);
-        }
-    }
-
-    pub(super) fn points(&mut self, points: &[Point]) {
-        self.0.reserve(8 * points.len());
-        for point in points {
-            self.f32(point.x);
-            self.f32(point.y);
-        }
-    }
-
-    fn bits(&mut self, bits: impl ExactSizeIterator<Item = bool>) {
-        let mut words = vec![0u32; bits.len().div_ceil(32)];
-        for (k, bit) in bits.enumerate() {
-            words[k / 32] |= u32::from(bit) << (k % 32);
-        }
-        for word in words {
-            self.0.extend_from_slice(&word.to_le_bytes());
-        }
-    }
 }

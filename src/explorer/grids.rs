@@ -4,11 +4,12 @@ use inbetween::mesh::geometry;
 use inbetween::pipeline::{LayerShape, Posed, Workbench};
 use rayon::prelude::*;
 
-use super::frames::{Words, asked_provider, numbers};
+use super::frames::{asked_provider, numbers};
 use super::http::{Request, Response};
 use super::model::Shown;
 use super::problem::{Problem, Refusal, Where};
 use super::session::Session;
+use super::wire::Words;
 
 /// Cells along a side of a grid of weights.
 const MOST_CELLS: usize = 512;

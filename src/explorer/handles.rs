@@ -1,6 +1,6 @@
 //! Dragging the drawing itself: as-rigid-as-possible deformation, and inverse posing.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::PoisonError;
 
 use inbetween::math::Point;
 use inbetween::mesh::PointLocator;
@@ -10,11 +10,13 @@ use inbetween::weights::{WeightError, WeightProvider};
 use serde::Deserialize;
 use serde_json::json;
 
-use super::frames::{Words, is_inverted, provider_named};
+use super::draggers::Dragger;
+use super::frames::{is_inverted, provider_named};
 use super::http::Response;
 use super::pictures::{pose_of, shape_of};
 use super::problem::{Problem, Refusal};
 use super::session::Session;
+use super::wire::Words;
 
 /// Steps of a drag if the page does not say.
 const STEPS: usize = 40;
@@ -22,19 +24,6 @@ const STEPS: usize = 40;
 const MOST_STEPS: usize = 600;
 /// Steps of a search near the present place: a hand waits for it.
 const REACH_STEPS: usize = 12;
-
-/// The deformation that is being dragged.
-#[derive(Debug, Default)]
-pub(super) struct Draggers(Mutex<Option<Dragger>>);
-
-#[derive(Debug)]
-struct Dragger {
-    /// Of the meshes, the layer and the pose.
-    key: (u64, usize, usize),
-    from: Vec<[f64; 2]>,
-    deformation: HandleDeformation,
-    scratch: HandleScratch,
-}
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -245,6 +245,7 @@
 
 mod correspondences;
 mod document;
+mod draggers;
 mod edit;
 mod export;
 mod frames;
@@ -252,6 +253,8 @@ mod gesture;
 mod grids;
 mod handles;
 mod http;
+mod jobs;
+mod meshes;
 mod model;
 mod page;
 mod picture_cache;
@@ -263,6 +266,7 @@ mod security;
 mod server;
 mod session;
 mod thinning;
+mod wire;
 mod worker;
 
 use std::path::Path;

@@ -5,12 +5,6 @@
 
 use super::http::Request;
 
-/// Of every answer. Nothing is loaded from elsewhere, nobody frames the page, and its address is told to nobody.
-pub(crate) const HEADERS: &str = "Content-Security-Policy: default-src 'self'; img-src 'self' blob: data:; base-uri 'none'; \
-    form-action 'none'; frame-ancestors 'none'; object-src 'none'\r\n\
-    Referrer-Policy: no-referrer\r\nX-Content-Type-Options: nosniff\r\nX-Frame-Options: DENY\r\n\
-    Cross-Origin-Resource-Policy: same-origin\r\nCross-Origin-Opener-Policy: same-origin\r\n";
-
 /// Bytes of the token.
 const TOKEN_BYTES: usize = 16;
 

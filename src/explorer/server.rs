@@ -13,7 +13,7 @@ use super::http::{NoRequest, Request, Response};
 use super::problem::Refusal;
 use super::security::Gate;
 use super::session::Session;
-use super::{correspondences, export, frames, gesture, grids, handles, page, pictures, scene_json};
+use super::{correspondences, export, frames, gesture, grids, handles, meshes, page, scene_json};
 
 /// Connections at a time; a browser opens six.
 const MOST_CONNECTIONS: usize = 64;
@@ -135,9 +135,9 @@ fn api(route: &str, request: &Request, session: &Arc<Session>) -> Result<Respons
         ("GET", "frame") => frames::frame(request, session),
         ("GET", "curves") => frames::curves(request, session),
         ("GET", "weights") => frames::weights(request, session),
-        ("GET", "puppet") => pictures::puppet(session),
-        ("GET", "mesh") => pictures::mesh(session),
-        ("GET", "texture") => pictures::texture(request, session),
+        ("GET", "puppet") => meshes::puppet(session),
+        ("GET", "mesh") => meshes::mesh(session),
+        ("GET", "texture") => meshes::texture(request, session),
         ("GET", "drawing") => correspondences::drawing(request, session),
         ("GET", "correspondences") => correspondences::correspondences(request, session),
         ("GET", "grid") => grids::weights(request, session),

@@ -15,9 +15,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::document::{Document, Outside};
+use super::draggers::Draggers;
 use super::edit::{self, Context, Op};
-use super::export::Jobs;
-use super::handles::Draggers;
+use super::jobs::Jobs;
 use super::model::Shown;
 use super::picture_cache::PictureCache;
 use super::problem::{Problem, Refusal};

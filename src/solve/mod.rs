@@ -9,7 +9,7 @@ mod sparse;
 
 pub use cholesky::SparseCholesky;
 pub use dense::{DenseMatrix, SolvedDense};
-pub use sparse::{SparseMatrix, Triplets};
+pub use sparse::{Entry, SparseMatrix, Triplets};
 
 /// Why a linear system has no usable solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

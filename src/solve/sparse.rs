@@ -2,6 +2,9 @@
 
 use sprs::{CsMat, TriMat};
 
+/// An entry of a matrix: row, column, value.
+pub type Entry = (usize, usize, f64);
+
 /// A list of matrix entries; entries at the same place add up.
 #[derive(Debug)]
 pub struct Triplets {
@@ -72,7 +75,7 @@ impl SparseMatrix {
     }
 
     /// The entries `(row, column, value)`, by column and then row.
-    pub fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+    pub fn entries(&self) -> impl Iterator<Item = Entry> + '_ {
         self.columns.outer_iterator().enumerate().flat_map(|(column, entries)| {
             entries
                 .iter()

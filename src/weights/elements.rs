@@ -7,9 +7,7 @@ use super::tessellation::Tessellation;
 use super::{Energy, WeightError, hessian};
 use crate::math::Point;
 use crate::mesh::{Located, geometry};
-
-/// An entry of a symmetric matrix, row >= column: row, column, value.
-pub(super) type Entry = (usize, usize, f64);
+use crate::solve::Entry;
 
 /// A linear form: unknowns and what each is multiplied with. No unknown comes twice.
 pub(super) type Form = Vec<(usize, f64)>;

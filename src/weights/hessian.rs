@@ -11,9 +11,9 @@
 use std::collections::BTreeMap;
 
 use super::clough_tocher;
-use super::elements::Entry;
 use super::tessellation::Tessellation;
 use crate::mesh::geometry;
+use crate::solve::Entry;
 
 /// The size of the smallest triangle around each vertex. Gradients are solved for in this unit, which keeps the digits
 /// where triangles are small.

@@ -7,12 +7,11 @@
 //!
 //! Unknown `v` is the value at vertex `v`.
 
-use super::elements::Entry;
 use super::tessellation::Tessellation;
 use super::{WallProblem, WeightError};
 use crate::math::Point;
 use crate::mesh::{Topology, geometry};
-use crate::solve::Triplets;
+use crate::solve::{Entry, Triplets};
 
 /// The gradient at a vertex as a linear form: an unknown and what it is multiplied with.
 pub(super) type GradientForm = Vec<(usize, Point)>;

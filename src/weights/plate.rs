@@ -21,9 +21,9 @@
 use std::borrow::Borrow;
 
 use super::WeightError;
-use super::elements::{Entry, Form};
+use super::elements::Form;
 use crate::math::vectorised;
-use crate::solve::{DenseMatrix, SolvedDense, SparseCholesky, Triplets};
+use crate::solve::{DenseMatrix, Entry, SolvedDense, SparseCholesky, Triplets};
 
 /// Right-hand sides solved together.
 const LANES: usize = 4;

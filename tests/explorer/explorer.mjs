@@ -424,7 +424,7 @@ async function onPicture(page) {
   // Somewhere on the drawing: the middle of a triangle near its edge.
   const spot = await page.evaluate(async () => {
     const { store } = await import('./state.js');
-    const { toStage } = await import('./picture.js');
+    const { toStage } = await import('./view.js');
     const k = store.frame.order.at(-1);
     const { positions } = store.frame.layers[k];
     const { triangles } = store.meshes[k];

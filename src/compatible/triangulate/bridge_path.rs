@@ -11,8 +11,8 @@
 //! The number of points is an upper bound: paths over the middles of edges are not the ones with the fewest links.
 //! The decimation takes out what was not needed. Cost O(m^2) a pose.
 
-use super::bridge::{Bridge, Narrow, Sights, relative_length};
 use super::free_space::{FreeSpace, Visits};
+use super::sights::{Narrow, Sights, relative_length};
 use crate::math::{Point, predicate};
 
 /// For how many pairs at once the paths are drawn. The rating counts triangles and not bends, so that a good pair may
@@ -21,6 +21,15 @@ const DRAWN: usize = 64;
 
 /// How many pairs are drawn at most. Past the first few only paths that leave no room in double precision fail.
 const MOST_DRAWN: usize = 1024;
+
+/// From a visit of the walk to a visit of an island, over as many points in every pose.
+#[derive(Debug)]
+pub(super) struct Bridge {
+    pub(super) from: usize,
+    pub(super) to: usize,
+    /// #poses x #points.
+    pub(super) interior: Vec<Vec<Point>>,
+}
 
 /// The proven path with the fewest points.
 ///

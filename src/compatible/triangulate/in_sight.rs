@@ -7,8 +7,8 @@
 //!
 //! Cost O(p log p + p i) for i islands and p pairs of visits in sight, and exact tests for each pair whose turn comes.
 
-use super::bridge::{Sights, relative_length};
 use super::free_space::Visits;
+use super::sights::{Sights, relative_length};
 use crate::math::{Point, predicate};
 
 /// Two visits that see one another in every pose, as long as there is no bridge between.
@@ -180,7 +180,7 @@ impl<'a> InSight<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bridge::free_spaces;
+    use super::super::sights::free_spaces;
     use super::*;
     use crate::math::point;
     use proptest::prelude::*;

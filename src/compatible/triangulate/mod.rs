@@ -41,6 +41,7 @@ mod line_of_sight;
 mod link_path;
 mod patch;
 mod regions;
+mod sights;
 mod single_steiner;
 mod visibility;
 
@@ -149,8 +150,8 @@ pub enum TriangulateError {
     Topology(#[from] TopologyError),
 }
 
-impl From<bridge::Narrow> for TriangulateError {
-    fn from(narrow: bridge::Narrow) -> Self {
+impl From<sights::Narrow> for TriangulateError {
+    fn from(narrow: sights::Narrow) -> Self {
         Self::TooNarrow {
             pose: narrow.pose,
             x: narrow.place.x,

@@ -5,7 +5,7 @@ import { iconButton, segments, toggle } from './controls.js';
 import { icon } from './icons.js';
 import { copyCommand, openExport } from './export.js';
 import { openKeys } from './keyboard.js';
-import { actualSize, fit, frameView, zoomBy } from './picture.js';
+import { actualSize, fit, frameView, zoomBy } from './view.js';
 import { flipTheme, isDark } from './theme.js';
 
 const app = byId('app');

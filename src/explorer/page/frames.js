@@ -74,11 +74,11 @@ on('view', (changes) => 'compare' in changes && wantFrame());
 // Outlines for a smaller picture are too coarse for a larger one.
 on('drawn', () => store.pixel < asked && wantFrame());
 
-/** Frames of poses or places, for what lies behind the picture. */
-export async function framesOf(name, values) {
+/** Frames of poses or places, for what lies behind the picture; `thin`: with outlines that are as fine as can be seen. */
+export async function framesOf(name, values, thin = true) {
   if (values.length === 0 || !(store.state?.revisions.shape > 0)) return [];
   const search = values.map((value) => `${name}=${value}`).join('&');
-  const response = await fetch(`api/frame${query(outlines())}&${search}`);
+  const response = await fetch(`api/frame${query(thin ? outlines() : { silhouette: 1 })}&${search}`);
   if (!response.ok) return [];
   return readFrames(new Words(await response.arrayBuffer())).filter((frame) => frame.shape === store.puppet?.shape);
 }

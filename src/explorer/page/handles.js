@@ -2,7 +2,7 @@
 import { postJson, postWords } from './api.js';
 import { follow, h, s, set } from './dom.js';
 import { framesOf } from './frames.js';
-import { drawingView, showBent, toDrawing, toStage } from './picture.js';
+import { drawingView, toDrawing, toStage } from './view.js';
 import { edit, emit, moveTo, on, rounded, store } from './state.js';
 
 let stage = null;
@@ -123,7 +123,8 @@ async function beginBend() {
     emit('refused', { message: `the layer ${store.puppet.layers[store.layer].name} is not in this pose` });
     return;
   }
-  const [frame] = await framesOf('weights', [store.scene.poses.map((_, k) => Number(k === basis))]);
+  // All points of the outline: it is to be bent.
+  const [frame] = await framesOf('weights', [store.scene.poses.map((_, k) => Number(k === basis))], false);
   edges = (frame?.layers ?? []).map((layer, k) => layer.rings.map((ring) => carriers(k, layer.positions, ring)));
   await deform();
 }
@@ -165,7 +166,7 @@ async function deform() {
   }
   if (handles.length === 0) {
     latest = null;
-    showBent(bentFrame(shownBent(), 0));
+    emit('bent', bentFrame(shownBent(), 0));
     return;
   }
   deforming = true;
@@ -176,7 +177,7 @@ async function deform() {
     const inverted = words.u32();
     const positions = words.f32s(2 * vertices);
     latest = positions;
-    showBent(bentFrame(positions, inverted));
+    emit('bent', bentFrame(positions, inverted));
   } catch (error) {
     emit('refused', error.problem ?? { message: error.message });
   }
@@ -276,7 +277,7 @@ function drawBar() {
 on('view', (changes) => {
   if (!('tool' in changes)) return;
   latest = null;
-  showBent(null);
+  emit('bent', null);
   said = '';
   if (store.view.tool === 'bend' && store.frame) beginBend();
   drawHandles();

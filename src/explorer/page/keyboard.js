@@ -6,7 +6,7 @@ import { arm, isArmed } from './recorder.js';
 import { addFresh, escapeMatches } from './marking.js';
 import { compare } from './inspector.js';
 import { goTo, nudge } from './pad.js';
-import { actualSize, fit, zoomBy } from './picture.js';
+import { actualSize, fit, zoomBy } from './view.js';
 import { asked, look, store } from './state.js';
 import { escapeGesture, play, stepFrame } from './timeline.js';
 

@@ -57,6 +57,7 @@ const MODULES: &[PageFile] = modules![
     "thumbnail.js",
     "timeline.js",
     "toasts.js",
+    "view.js",
     "weights.js",
 ];
 

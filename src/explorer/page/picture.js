@@ -1,9 +1,10 @@
 // The picture: the frame where the probe is, with what can be laid under and over it.
-import { byId, clamp, h, onceAFrame, short } from './dom.js';
+import { byId, h, onceAFrame, short } from './dom.js';
 import { curves, placeCurves } from './curves.js';
 import { emit, on, store } from './state.js';
 import { framesOf } from './frames.js';
 import { extent, PuppetPainter } from './puppet.js';
+import { drawingView, frameSize, frameView, panBy, zoomBy } from './view.js';
 import { attachHandles, drawHandles, pictureDrag } from './handles.js';
 
 const stage = byId('stage');
@@ -17,60 +18,8 @@ attachHandles(stage);
 const painter = new PuppetPainter(canvas);
 if (!painter.gl) note.textContent = 'This browser has no WebGL2: the drawing cannot be shown.';
 
-/** Free room around the frame when it is fitted, in CSS pixels. */
-const ROOM = 20;
-/** `null`: fitted. Otherwise CSS pixels a frame pixel and the frame's corner. */
-let zoomed = null;
 let under = [];
 let loaded = null;
-
-/** Of the frame: fallbacks for scenes without animation. */
-const frameSize = () => store.scene?.animation?.size ?? [512, 512];
-
-/** CSS pixels a frame pixel, and where the frame's corner is. */
-export function frameView() {
-  if (zoomed) return zoomed;
-  const [width, height] = frameSize();
-  const [w, h_] = [stage.clientWidth, stage.clientHeight];
-  const scale = Math.max(0.02, Math.min((w - 2 * ROOM) / width, (h_ - 2 * ROOM) / height));
-  return { scale, x: Math.round((w - width * scale) / 2), y: Math.round((h_ - height * scale) / 2) };
-}
-
-/** CSS pixels a drawing unit, and where the origin of drawings is. */
-export function drawingView() {
-  const { scale, x, y } = frameView();
-  const camera = store.scene?.camera ?? { scale: 1, shift: [0, 0] };
-  return { scale: scale * camera.scale, x: x + camera.shift[0] * scale, y: y + camera.shift[1] * scale };
-}
-
-export const toDrawing = ([x, y], view = drawingView()) => [(x - view.x) / view.scale, (y - view.y) / view.scale];
-export const toStage = ([x, y], view = drawingView()) => [x * view.scale + view.x, y * view.scale + view.y];
-
-export function fit() {
-  zoomed = null;
-  emit('zoom');
-}
-
-/** Zooms by a factor around a place of the stage; its middle if there is none. */
-export function zoomBy(factor, [px, py] = [stage.clientWidth / 2, stage.clientHeight / 2]) {
-  const { scale, x, y } = frameView();
-  const next = clamp(scale * factor, 0.05, 16);
-  zoomed = { scale: next, x: px - ((px - x) * next) / scale, y: py - ((py - y) * next) / scale };
-  emit('zoom');
-}
-
-/** One frame pixel a CSS pixel. */
-export function actualSize() {
-  const [width, height] = frameSize();
-  zoomed = { scale: 1, x: Math.round((stage.clientWidth - width) / 2), y: Math.round((stage.clientHeight - height) / 2) };
-  emit('zoom');
-}
-
-export function panBy(dx, dy) {
-  const { scale, x, y } = frameView();
-  zoomed = { scale, x: x + dx, y: y + dy };
-  emit('zoom');
-}
 
 /** A colour of the style as premultiplied red, green, blue, alpha. */
 function styled(name, alpha) {
@@ -132,10 +81,10 @@ function tellWhat() {
 
 /** A frame with a layer's mesh that is being bent by handles, if there is one. */
 let bent = null;
-export function showBent(frame) {
+on('bent', (frame) => {
   bent = frame;
   redraw();
-}
+});
 const handled = () => (store.view.tool === 'bend' ? bent : null);
 
 export const redraw = onceAFrame(draw);

@@ -3,8 +3,8 @@
 // Events: `changing` (what changed is being asked for), `scene`, `state`, `shape` (meshes or pictures), `weights` (weights of the same
 // places may differ), `place` (the probe), `frame` (a frame arrived), `view` (what is shown and how), `pose` (another pose is looked
 // at), `gesture` (a path to be saved); `match` (the match arrived), `match-stale` (it is not what was edited), `layer` (the matches
-// show another one), `marks` (what is chosen or new), `held` (where it is dragged); `drawn` and `matched` (frame or match are on the
-// screen).
+// show another one), `marks` (what is chosen or new), `held` (where it is dragged); `bent` (a frame that handles bend); `drawn` and
+// `matched` (frame or match are on the screen).
 import { getJson, getWords, postJson, readMeshes, Refused } from './api.js';
 
 export const store = {
