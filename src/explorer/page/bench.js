@@ -47,6 +47,8 @@ async function moveLandmarks() {
     const shape = store.state.revisions.shape;
     await drag.cancel();
     for (let wait = 0; wait < 40 && store.state.revisions.shape === shape; wait++) await new Promise((go) => setTimeout(go, 50));
+    // The camera is found anew when nobody drags, after the shape is there.
+    await new Promise((go) => setTimeout(go, 300));
   }
   look({ main: 'picture' });
   return times;
