@@ -78,6 +78,13 @@ impl Stretch {
     /// What each is called in scene files and on the command line.
     pub const NAMED: [(&'static str, Self); 3] =
         [("linear", Self::Linear), ("limited", Self::Limited), ("log", Self::Log)];
+
+    /// The one of that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        let found = Self::NAMED.into_iter().find(|(own, _)| *own == name);
+        found.map(|(_, stretch)| stretch)
+    }
 }
 
 /// What moves linearly in the weights, or as the caller of a frame says ([`RigidBlend::blend_anchored`]).

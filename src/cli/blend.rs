@@ -58,8 +58,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
             )
         })?),
     };
-    let named = Stretch::NAMED.into_iter().find(|(name, _)| *name == arguments.stretch);
-    let stretch = named.map_or(Stretch::default(), |(_, stretch)| stretch);
+    let stretch = Stretch::named(&arguments.stretch).unwrap_or_default();
     let output = Output::open(&arguments.output)?;
     let options = BlendOptions {
         reference,

@@ -57,9 +57,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for Numbers(place) in &arguments.at {
         check_place(place, &scene)?;
     }
-    let asked = arguments.provider.as_deref();
-    let named = Provider::NAMED.into_iter().find(|(name, _)| Some(*name) == asked);
-    let provider = named.map(|(_, provider)| provider);
+    let provider = arguments.provider.as_deref().and_then(Provider::named);
     let output = Output::open(&arguments.output)?;
     let file = scene.file.display().to_string();
     let scene = laid_out(scene).context(file)?;

@@ -38,9 +38,7 @@ pub(super) fn asked_provider(request: &Request) -> Result<Option<Provider>, Refu
 }
 
 pub(super) fn provider_named(name: &str) -> Result<Provider, Refusal> {
-    let named = Provider::NAMED.into_iter().find(|(own, _)| *own == name);
-    let named = named.map(|(_, provider)| provider);
-    named.ok_or_else(|| Refusal::bad(format!("provider '{name}' is neither biharmonic nor rbf")))
+    Provider::named(name).ok_or_else(|| Refusal::bad(format!("provider '{name}' is neither biharmonic nor rbf")))
 }
 
 fn sharpness(request: &Request) -> Result<Option<f64>, Refusal> {
@@ -68,9 +66,8 @@ fn stretch(request: &Request) -> Result<Option<Stretch>, Refusal> {
     let Some(name) = request.value("stretch").filter(|name| !name.is_empty()) else {
         return Ok(None);
     };
-    let named = Stretch::NAMED.into_iter().find(|(own, _)| *own == name);
     let refusal = || Refusal::bad(format!("stretch '{name}' is none of linear, limited, log"));
-    named.map(|(_, stretch)| Some(stretch)).ok_or_else(refusal)
+    Stretch::named(name).map(Some).ok_or_else(refusal)
 }
 
 /// The weights of every place or list of weights of a request, in its order.

@@ -137,6 +137,13 @@ pub enum Provider {
 impl Provider {
     /// What each is called in scene files and on the command line.
     pub const NAMED: [(&'static str, Self); 2] = [("biharmonic", Self::Biharmonic), ("rbf", Self::Rbf)];
+
+    /// The one of that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        let found = Self::NAMED.into_iter().find(|(own, _)| *own == name);
+        found.map(|(_, provider)| provider)
+    }
 }
 
 /// Which radial function the cardinal basis uses.
