@@ -13,7 +13,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::http::{Request, Response};
-use super::pictures::{asked_layer, index, layer_scene, pose_of, shape_of, texture_of};
+use super::pictures::{asked_layer, index, pose_of, shape_of, texture_of};
 use super::problem::Refusal;
 use super::session::Session;
 
@@ -60,7 +60,7 @@ fn picture_json(picture: &Picture) -> Value {
 fn matched(bench: &Workbench, layer: usize, samples: usize) -> Value {
     let (shape, report) = (&bench.layers()[layer], bench.report(layer));
     let mapping = shape.mapping();
-    let scene = layer_scene(bench.scene(), layer);
+    let scene = bench.scene().of_layer(layer);
     let drawn = scene.drawn_poses();
     let texture_of = texture_of(bench, layer);
     let curves: Vec<ArcLength> = mapping
@@ -133,7 +133,7 @@ fn matched(bench: &Workbench, layer: usize, samples: usize) -> Value {
 
 /// Of drawings that could not be mapped.
 fn unmatched(scene: &Scene, layer: usize) -> Value {
-    let own = layer_scene(scene, layer);
+    let own = scene.of_layer(layer);
     let all: Vec<usize> = (0..scene.poses.len()).collect();
     let poses_of = scene.layers.get(layer).map_or(&all, |layer| &layer.poses);
     let pose_json = |(pose, index): (usize, &usize)| {
@@ -172,7 +172,7 @@ pub(super) fn drawing(request: &Request, session: &Session) -> Result<Response, 
         None => LONGEST_SIDE,
         Some(text) => text.parse().map_err(|_| Refusal::bad("`max` is no number"))?,
     };
-    let own = layer_scene(scene, layer);
+    let own = scene.of_layer(layer);
     let own_pose = match scene.layers.get(layer) {
         Some(layer) => layer.poses.iter().position(|p| *p == pose),
         None => Some(pose),
@@ -180,7 +180,7 @@ pub(super) fn drawing(request: &Request, session: &Session) -> Result<Response, 
     let root = own_pose.and_then(|pose| Some(own.drawing_of(pose)?.0));
     let root = root.ok_or_else(|| Refusal::bad(format!("pose {pose} has no drawing in layer {layer}")))?;
     let kept = shown.bench.as_deref().and_then(|bench| {
-        let theirs = layer_scene(bench.scene(), layer);
+        let theirs = bench.scene().of_layer(layer);
         let name = &own.poses[root].name;
         let k = theirs
             .drawn_poses()

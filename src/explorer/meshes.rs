@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::http::{Request, Response};
-use super::pictures::{Kind, asked_layer, index, layer_scene, texture_of};
+use super::pictures::{Kind, asked_layer, index, texture_of};
 use super::problem::Refusal;
 use super::session::Session;
 use super::wire::Words;
@@ -14,7 +14,7 @@ pub(super) fn puppet(session: &Session) -> Result<Response, Refusal> {
     let bench = shown.bench()?;
     let layer = |k: usize| {
         let shape = &bench.layers()[k];
-        let drawn = layer_scene(bench.scene(), k).drawn_poses();
+        let drawn = bench.scene().of_layer(k).drawn_poses();
         let texture = |index: usize| {
             json!({
                 "pose": drawn[index],

@@ -4,7 +4,7 @@ use inbetween::export::texture_png;
 use inbetween::math::Point;
 use inbetween::pipeline::{LayerShape, Workbench};
 use inbetween::render::{PuppetTexture, Texture};
-use inbetween::scene::{Facing, Scene};
+use inbetween::scene::Facing;
 use serde_json::{Value, json};
 
 use super::http::Request;
@@ -13,14 +13,9 @@ use super::problem::Refusal;
 /// How many texels a pixel of the animation's frames may have: pages are zoomed, and screens are finer than frames.
 const TEXELS_A_PIXEL: f64 = 2.0;
 
-/// A layer as a scene without layers.
-pub(super) fn layer_scene(scene: &Scene, layer: usize) -> &Scene {
-    scene.layers.get(layer).map_or(scene, |layer| &layer.scene)
-}
-
 /// A place on a pose of a layer, from the file's coordinates to drawing units or back: reflected where the pose is.
 pub(super) fn reflected(bench: &Workbench, layer: usize, pose: &str, place: Point) -> Point {
-    let scene = layer_scene(bench.scene(), layer);
+    let scene = bench.scene().of_layer(layer);
     let root = (scene.poses.iter().position(|own| own.name == pose)).and_then(|index| scene.drawing_of(index));
     match root {
         Some((root, source)) if source.facing == Facing::Mirrored => {
@@ -33,7 +28,7 @@ pub(super) fn reflected(bench: &Workbench, layer: usize, pose: &str, place: Poin
 
 /// The texture of each pose of a layer.
 pub(super) fn texture_of(bench: &Workbench, layer: usize) -> Vec<usize> {
-    layer_scene(bench.scene(), layer).shown_drawings()
+    bench.scene().of_layer(layer).shown_drawings()
 }
 
 /// The shape of the layer that the body of a request is about.

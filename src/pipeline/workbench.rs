@@ -212,8 +212,7 @@ impl Workbench {
     /// `drawing` of a layer, counted like [`Self::drawings`].
     #[must_use]
     pub fn as_used(&self, layer: usize, drawing: usize, place: Point) -> Point {
-        let scene = self.scene.layers.get(layer).map_or(&self.scene, |layer| &layer.scene);
-        landmarks::as_used(scene, self.drawings(layer), drawing, place)
+        landmarks::as_used(self.scene.of_layer(layer), self.drawings(layer), drawing, place)
     }
 
     /// What the artist should know, one line a remark.
@@ -282,20 +281,21 @@ impl Workbench {
     /// Whether frames of a layer are curves: its drawings are, and the scene wants them so.
     #[must_use]
     pub fn is_drawn_as_curves(&self, layer: usize) -> bool {
-        let scene = self.scene.layers.get(layer).map_or(&self.scene, |layer| &layer.scene);
-        scene.art == ArtChoice::Curves && self.drawings(layer).iter().all(|drawing| drawing.art.is_some())
+        self.scene.of_layer(layer).art == ArtChoice::Curves
+            && self.drawings(layer).iter().all(|drawing| drawing.art.is_some())
     }
 
     /// Whether both have the same shapes, drawn with the same art; their weights may differ.
     #[must_use]
     pub fn draws_like(&self, other: &Self) -> bool {
-        let art = |scene: &Scene| (scene.art, scene.colour_blend);
-        let layers = |scene: &Scene| scene.layers.iter().map(|layer| art(&layer.scene)).collect::<Vec<_>>();
+        let art = |bench: &Self, layer: usize| {
+            let scene = bench.scene.of_layer(layer);
+            (scene.art, scene.colour_blend)
+        };
         self.has_figure_of(other)
             && self.has_pictures_of(other)
             && self.camera == other.camera
-            && art(&self.scene) == art(&other.scene)
-            && layers(&self.scene) == layers(&other.scene)
+            && (0..self.layers.len()).all(|layer| art(self, layer) == art(other, layer))
     }
 
     /// The blended outlines of a layer: outer ring first.

@@ -32,6 +32,12 @@ pub struct LayerAnchor {
 }
 
 impl Scene {
+    /// A layer as a scene without layers; of a scene without any, itself.
+    #[must_use]
+    pub fn of_layer(&self, layer: usize) -> &Self {
+        self.layers.get(layer).map_or(self, |layer| &layer.scene)
+    }
+
     /// For each pose the one whose drawing it shows: itself, or the pose that it is a deformed copy of in the end.
     #[must_use]
     pub fn originals(&self) -> Vec<usize> {
