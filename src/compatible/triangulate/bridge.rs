@@ -14,8 +14,8 @@
 //! Cost O(m^2), m the number of vertices, and as much again for each island that needs Steiner points.
 
 use super::bridge_path;
-use super::free_space::Visits;
-use super::in_sight::InSight;
+use super::in_sight::join_in_sight;
+use super::joining::Joining;
 use super::sights::{Narrow, Sights, free_spaces};
 use crate::math::{Point, point};
 
@@ -38,34 +38,20 @@ pub(super) fn join_islands(
     let diagonals: Vec<f64> = positions.iter().map(point::diagonal).collect();
     let mut steiner = 0;
     while !islands.is_empty() {
-        let visits = Visits::new(std::iter::once(&walk).chain(&islands));
-        let spaces = free_spaces(positions, &visits)?;
-        let sights = Sights::new(&spaces, &visits);
-        let in_sight = InSight::join(positions, &diagonals, visits, &sights);
-        if !in_sight.is_empty() {
-            (walk, islands) = in_sight.walks();
-            continue;
-        }
-        let visits = in_sight.visits;
-        let bridge = bridge_path::fewest_bends(positions, &diagonals, &visits, &spaces, &sights)?;
-        let mut points: Vec<usize> = Vec::new();
-        for k in 0..bridge.interior[0].len() {
-            points.push(positions[0].len());
+        let mut joining = Joining::new(&walk, &islands);
+        let spaces = free_spaces(positions, &joining.visits)?;
+        let sights = Sights::new(&spaces, &joining.visits);
+        if !join_in_sight(&mut joining, positions, &diagonals, &sights) {
+            let bridge = bridge_path::fewest_bends(positions, &diagonals, &joining.visits, &spaces, &sights)?;
+            let first = positions[0].len();
             for (positions, interior) in positions.iter_mut().zip(&bridge.interior) {
-                positions.push(interior[k]);
+                positions.extend(interior);
             }
+            let points: Vec<usize> = (first..positions[0].len()).collect();
+            steiner += points.len();
+            joining.build(bridge.from, &points, bridge.to);
         }
-        steiner += points.len();
-        let which = visits.starts.partition_point(|&start| start <= bridge.to) - 2;
-        let island = islands.remove(which);
-        let entered = bridge.to - visits.starts[which + 1];
-        // Back to where it was entered; a single vertex is visited once.
-        let around = if island.len() == 1 { 1 } else { island.len() + 1 };
-        let mut detour = points.clone();
-        detour.extend((0..around).map(|k| island[(entered + k) % island.len()]));
-        detour.extend(points.iter().rev());
-        detour.push(walk[bridge.from]);
-        walk.splice(bridge.from + 1..bridge.from + 1, detour);
+        (walk, islands) = joining.walks();
     }
     Ok(Joined { walk, steiner })
 }

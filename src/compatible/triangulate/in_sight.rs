@@ -7,7 +7,7 @@
 //!
 //! Cost O(p log p + p i) for i islands and p pairs of visits in sight, and exact tests for each pair whose turn comes.
 
-use super::free_space::Visits;
+use super::joining::Joining;
 use super::sights::{Sights, relative_length};
 use crate::math::{Point, predicate};
 
@@ -19,100 +19,63 @@ struct Pair {
     ends: [usize; 2],
 }
 
-/// The walk around a region, the islands in it, and the bridges that join them.
+/// The bridges so far, as pairs of vertices.
 #[derive(Debug)]
-pub(super) struct InSight<'a> {
+struct Bridges<'a> {
     positions: &'a [Vec<Point>],
-    pub(super) visits: Visits,
-    /// For each visit at first, the walk it was on; 0 is the one around the region.
-    of: Vec<usize>,
-    /// Whether a walk is one with that around the region.
-    is_joined: Vec<bool>,
-    /// For each visit at first, the visits that it has been divided into.
-    parts: Vec<Vec<usize>>,
-    /// For each visit, the one at first that it is a part of.
-    whole: Vec<usize>,
-    /// As pairs of vertices.
-    bridges: Vec<[usize; 2]>,
+    built: Vec<[usize; 2]>,
 }
 
-impl<'a> InSight<'a> {
-    /// Joins all islands that are in sight of the walk, or of an island that was joined before.
-    pub(super) fn join(positions: &'a [Vec<Point>], diagonals: &[f64], visits: Visits, sights: &Sights) -> Self {
-        let count = visits.vertex.len();
-        let walks = visits.starts.windows(2).enumerate();
-        let of: Vec<usize> = walks
-            .flat_map(|(walk, ends)| std::iter::repeat_n(walk, ends[1] - ends[0]))
-            .collect();
-        let mut this = Self {
-            positions,
-            is_joined: (1..visits.starts.len()).map(|walk| walk == 1).collect(),
-            parts: (0..count).map(|visit| vec![visit]).collect(),
-            whole: (0..count).collect(),
-            bridges: Vec::new(),
-            of,
-            visits,
-        };
-        let mut pairs = this.pairs(diagonals, sights);
-        while let Some([from, to]) = this.nearest(&mut pairs) {
-            this.build(from, to);
-        }
-        this
+/// Joins all islands that are in sight of the walk, or of an island that was joined before; whether there was any.
+pub(super) fn join_in_sight(
+    joining: &mut Joining,
+    positions: &[Vec<Point>],
+    diagonals: &[f64],
+    sights: &Sights,
+) -> bool {
+    let mut pairs = pairs(joining, positions, diagonals, sights);
+    let mut bridges = Bridges {
+        positions,
+        built: Vec::new(),
+    };
+    while let Some([from, to]) = bridges.nearest(joining, &mut pairs) {
+        bridges.built.push([from, to].map(|visit| joining.visits.vertex[visit]));
+        joining.build(from, &[], to);
     }
+    !bridges.built.is_empty()
+}
 
-    /// Whether no island was.
-    pub(super) fn is_empty(&self) -> bool {
-        self.bridges.is_empty()
-    }
+/// All pairs, the shortest first.
+fn pairs(joining: &Joining, positions: &[Vec<Point>], diagonals: &[f64], sights: &Sights) -> Vec<Pair> {
+    let vertex = &joining.visits.vertex;
+    let mut pairs: Vec<Pair> = (joining.visits.starts[1]..vertex.len())
+        .flat_map(|to| sights.common(to).map(move |from| [from, to]))
+        .filter(|&[from, to]| joining.walk_of(from) < joining.walk_of(to))
+        .map(|ends| Pair {
+            length: relative_length(positions, diagonals, ends.map(|visit| vertex[visit])),
+            ends,
+        })
+        .collect();
+    pairs.sort_by(|a, b| a.length.total_cmp(&b.length).then(a.ends.cmp(&b.ends)));
+    pairs
+}
 
-    /// The walk with what was joined, and the islands that were not.
-    pub(super) fn walks(&self) -> (Vec<usize>, Vec<Vec<usize>>) {
-        let islands = (1..self.is_joined.len()).filter(|&island| !self.is_joined[island]);
-        (
-            self.around(0),
-            islands.map(|island| self.around(self.visits.starts[island])).collect(),
-        )
-    }
-
-    fn around(&self, start: usize) -> Vec<usize> {
-        let mut walk = vec![self.visits.vertex[start]];
-        let mut at = self.visits.next[start];
-        while at != start {
-            walk.push(self.visits.vertex[at]);
-            at = self.visits.next[at];
-        }
-        walk
-    }
-
-    /// All pairs, the shortest first.
-    fn pairs(&self, diagonals: &[f64], sights: &Sights) -> Vec<Pair> {
-        let vertex = &self.visits.vertex;
-        let mut pairs: Vec<Pair> = (self.visits.starts[1]..vertex.len())
-            .flat_map(|to| sights.common(to).map(move |from| [from, to]))
-            .filter(|&[from, to]| self.of[from] < self.of[to])
-            .map(|ends| Pair {
-                length: relative_length(self.positions, diagonals, ends.map(|visit| vertex[visit])),
-                ends,
-            })
-            .collect();
-        pairs.sort_by(|a, b| a.length.total_cmp(&b.length).then(a.ends.cmp(&b.ends)));
-        pairs
-    }
-
+impl Bridges<'_> {
     /// The ends of the shortest bridge from what is joined to what is not. Pairs that can be none any more are taken out.
-    fn nearest(&self, pairs: &mut Vec<Pair>) -> Option<[usize; 2]> {
+    fn nearest(&self, joining: &Joining, pairs: &mut Vec<Pair>) -> Option<[usize; 2]> {
         let mut found = None;
-        pairs.retain(|pair| match pair.ends.map(|end| self.is_joined[self.of[end]]) {
+        pairs.retain(|pair| match pair.ends.map(|end| joining.is_joined(end)) {
             _ if found.is_some() => true,
             [false, false] => true,
             [true, true] => false,
             [is_first_joined, _] => {
                 let [first, second] = pair.ends;
-                found = self.in_sight(if is_first_joined {
+                let ends = if is_first_joined {
                     [first, second]
                 } else {
                     [second, first]
-                });
+                };
+                found = self.in_sight(joining, ends);
                 false
             }
         });
@@ -120,66 +83,34 @@ impl<'a> InSight<'a> {
     }
 
     /// The visits that the ends of a pair are by now, if they still see one another in every pose.
-    fn in_sight(&self, ends: [usize; 2]) -> Option<[usize; 2]> {
-        let [a, b] = ends.map(|visit| self.visits.vertex[visit]);
+    fn in_sight(&self, joining: &Joining, ends: [usize; 2]) -> Option<[usize; 2]> {
+        let [a, b] = ends.map(|visit| joining.visits.vertex[visit]);
         let is_blocked = self
-            .bridges
+            .built
             .iter()
             .filter(|bridge| !bridge.contains(&a) && !bridge.contains(&b))
             .any(|&[c, d]| (self.positions.iter()).any(|at| predicate::touch(at[a], at[b], at[c], at[d])));
         if is_blocked {
             return None;
         }
-        let part = |visit: usize, target: usize| {
-            let opens = |&part: &usize| (self.positions.iter()).all(|at| self.visits.opens_to(part, at, at[target]));
-            let parts = &self.parts[visit];
-            if parts.len() == 1 {
-                Some(visit)
-            } else {
+        let part = |visit: usize, target: usize| match joining.parts(visit) {
+            [only] => Some(*only),
+            parts => {
+                let opens = |&part: &usize| {
+                    self.positions
+                        .iter()
+                        .all(|at| joining.visits.opens_to(part, at, at[target]))
+                };
                 parts.iter().copied().find(opens)
             }
         };
         Some([part(ends[0], b)?, part(ends[1], a)?])
     }
-
-    /// Leads the walk from visit `from` to `to`, once around the island there, and back.
-    fn build(&mut self, from: usize, to: usize) {
-        let vertex = &self.visits.vertex;
-        self.bridges.push([vertex[from], vertex[to]]);
-        self.is_joined[self.of[self.whole[to]]] = true;
-        let (after, before) = (self.visits.next[from], self.visits.previous[to]);
-        let on = self.divide(from);
-        self.link(from, to);
-        if before == to {
-            // A single vertex is visited once.
-            self.link(to, on);
-        } else {
-            let back = self.divide(to);
-            self.link(before, back);
-            self.link(back, on);
-        }
-        self.link(on, after);
-    }
-
-    /// A second visit of the same vertex.
-    fn divide(&mut self, visit: usize) -> usize {
-        let (part, whole) = (self.whole.len(), self.whole[visit]);
-        self.whole.push(whole);
-        self.parts[whole].push(part);
-        self.visits.vertex.push(self.visits.vertex[visit]);
-        self.visits.next.push(part);
-        self.visits.previous.push(part);
-        part
-    }
-
-    fn link(&mut self, visit: usize, next: usize) {
-        self.visits.next[visit] = next;
-        self.visits.previous[next] = visit;
-    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::free_space::Visits;
     use super::super::sights::free_spaces;
     use super::*;
     use crate::math::point;
@@ -235,9 +166,10 @@ mod tests {
             let islands: Vec<Vec<usize>> =
                 [vec![5, 6, 7], vec![8, 9]].into_iter().chain((10..17).map(|v| vec![v])).collect();
             let diagonals: Vec<f64> = positions.iter().map(point::diagonal).collect();
-            let visits = Visits::new(std::iter::once(&walk).chain(&islands));
-            let sights = Sights::new(&free_spaces(&positions, &visits).expect("room"), &visits);
-            let (joined, left) = InSight::join(&positions, &diagonals, visits, &sights).walks();
+            let mut joining = Joining::new(&walk, &islands);
+            let sights = Sights::new(&free_spaces(&positions, &joining.visits).expect("room"), &joining.visits);
+            prop_assert!(join_in_sight(&mut joining, &positions, &diagonals, &sights));
+            let (joined, left) = joining.walks();
             prop_assert!(left.is_empty());
             prop_assert_eq!(joined, anew(&positions, walk, islands));
         }

@@ -37,6 +37,7 @@ mod features;
 mod free_space;
 mod halving_path;
 mod in_sight;
+mod joining;
 mod line_of_sight;
 mod link_path;
 mod patch;
