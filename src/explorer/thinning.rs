@@ -20,13 +20,13 @@ pub(super) fn thinned(ring: &[Point], tolerance: f64) -> Vec<Point> {
     let (mut from, mut last) = (first, first);
     let (mut cone, mut farthest) = (None, 0.0_f64);
     for &p in ring.iter().skip(1).chain([&first]) {
-        let distance = (p - from).norm();
+        let mut distance = (p - from).norm();
         if !(distance >= farthest && cone.is_none_or(|cone| is_within(cone, p - from))) {
             kept.push(last);
-            (from, cone, farthest) = (last, None, 0.0);
+            (from, cone) = (last, None);
+            distance = (p - from).norm();
         }
-        let distance = (p - from).norm();
-        farthest = farthest.max(distance);
+        farthest = distance;
         cone = narrowed(cone, p - from, distance, tolerance);
         last = p;
     }

@@ -138,6 +138,19 @@ mod tests {
     }
 
     #[test]
+    fn the_smallest_angle_is_the_least_of_all_three() {
+        let base = [[0.0, 0.0], [3.0, 0.2], [0.7, 1.9]].map(Point::from);
+        for turn in 0..3 {
+            let mut triangle = base;
+            triangle.rotate_left(turn);
+            let least = angles_rad(triangle).into_iter().fold(f64::INFINITY, f64::min);
+            assert_eq!(smallest_angle_rad(triangle), least);
+        }
+        let equilateral = [[0.0, 0.0], [2.0, 0.0], [1.0, 3.0_f64.sqrt()]].map(Point::from);
+        assert!((smallest_angle_rad(equilateral) - std::f64::consts::FRAC_PI_3).abs() < 1e-15);
+    }
+
+    #[test]
     fn measures_of_a_right_triangle() {
         let triangle = [[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]].map(Point::from);
         assert_eq!(signed_area(triangle), 6.0);

@@ -1,6 +1,7 @@
 // The frame itself, where drawings are carried as curves: once the probe rests, what is rendered takes the place of the pixels.
 import { query } from './api.js';
 import { h } from './dom.js';
+import { instead } from './frames.js';
 import { on, store } from './state.js';
 
 /** Milliseconds without another frame after which the probe rests. */
@@ -9,8 +10,6 @@ const RESTS_AFTER = 90;
 export const curves = h('img', { class: 'curves hidden', alt: '', 'aria-hidden': 'true', draggable: 'false' });
 let resting = 0;
 let asked = 0;
-/** The frame that is shown as curves. */
-let shown = null;
 
 const isWanted = () => store.view.main === 'picture' && store.view.onion === 'off' && !store.view.mesh && store.view.tool !== 'bend' &&
   store.frame?.layers.length > 0 && (store.puppet?.layers ?? []).some((layer) => layer.curves);
@@ -23,7 +22,6 @@ function show(value) {
 /** The pixels are shown again, until the probe rests. */
 function hide() {
   asked++;
-  shown = null;
   show(false);
   clearTimeout(resting);
   if (isWanted()) resting = setTimeout(load, RESTS_AFTER);
@@ -32,21 +30,19 @@ function hide() {
 async function load() {
   const mine = ++asked;
   const { frame } = store;
-  curves.src = `api/curves${query({ at: frame.place, ...(store.view.compare ?? {}) })}&v=${frame.shape}.${frame.revision}`;
+  curves.src = `api/curves${query({ at: frame.place, ...instead() })}&v=${frame.shape}.${frame.revision}`;
   try {
     await curves.decode();
   } catch {
     return;
   }
   if (mine !== asked || frame !== store.frame || !isWanted()) return;
-  shown = frame;
   show(true);
   document.documentElement.dataset.curves = frame.place.join(',');
 }
 
 /** Lays it where the frame is. */
 export function placeCurves({ scale, x, y }, [width, height]) {
-  if (shown && shown !== store.frame) hide();
   curves.style.transform = `translate(${x}px, ${y}px)`;
   curves.style.width = `${width * scale}px`;
   curves.style.height = `${height * scale}px`;

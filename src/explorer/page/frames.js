@@ -16,7 +16,7 @@ let asked = Infinity;
 export const outlines = () => ({ silhouette: 1, tolerance: OUTLINES_WITHIN * store.pixel });
 
 /** What a comparison shows in place of the scene's own settings. */
-const instead = () => store.view.compare ?? {};
+export const instead = () => store.view.compare ?? {};
 
 async function ask() {
   if (asking || !wanted || !store.scene?.poses.length) return;

@@ -26,7 +26,7 @@ export function press(event, cell) {
   }
   const group = event.target.closest('.mark, .line');
   if (group?.classList.contains('line')) return dragLine(event, cell, group.dataset.landmark || null);
-  if (group) return dragMark(event, cell, group.dataset.landmark || null);
+  if (group) return dragged(event, cell, group.dataset.landmark || null, (next) => placeUnder(next, cell));
   if (store.view.mark === 'line') begin(cell, placeUnder(event, cell));
   else propose(cell, placeUnder(event, cell));
 }
@@ -44,10 +44,6 @@ export function pressTwice(event, cell) {
 }
 
 // Landmarks that are there.
-
-function dragMark(event, cell, name) {
-  dragged(event, cell, name, (next) => placeUnder(next, cell));
-}
 
 /** Drags a point of a line; between two points, a new one. */
 function dragLine(event, cell, name) {
