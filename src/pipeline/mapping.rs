@@ -33,15 +33,15 @@ pub fn map_drawings(scene: &Scene, drawings: &[Drawing]) -> Result<(Mapping, Map
     map_drawings_observed(scene, drawings, &mut |_| ())
 }
 
-/// As [`map_drawings`]; `begins` is told every stage as it begins, in the order of [`Stage`]. The library reads no clock:
-/// whoever wants to know how long a stage takes looks at one there.
+/// As [`map_drawings`]; `begins` is told every stage as it begins, in the order of [`Stage`], on the thread that works on it. The
+/// library reads no clock: whoever wants to know how long a stage takes looks at one there.
 ///
 /// # Errors
 /// As [`map_drawings`].
 pub fn map_drawings_observed(
     scene: &Scene,
     drawings: &[Drawing],
-    begins: &mut dyn FnMut(Stage),
+    begins: &mut (dyn FnMut(Stage) + Send),
 ) -> Result<(Mapping, MappingReport), PipelineError> {
     if !scene.layers.is_empty() {
         return Err(PipelineError::Layered {
@@ -53,9 +53,12 @@ pub fn map_drawings_observed(
         let problem = format!("{} drawings for {} drawn poses", drawings.len(), drawn.poses.len());
         return Err(PipelineError::stage(&[], None, problem));
     }
-    let (mapping, mut report, _) = map_drawn(&drawn, drawings, None, begins)?;
-    let mapping = deformed::with_copies(scene, drawings, mapping, &mut report)?;
-    Ok((mapping, report))
+    // The stages hand thousands of small tasks to the thread pool; from outside it, each would put this thread to sleep.
+    rayon::scope(|_| {
+        let (mapping, mut report, _) = map_drawn(&drawn, drawings, None, begins)?;
+        let mapping = deformed::with_copies(scene, drawings, mapping, &mut report)?;
+        Ok((mapping, report))
+    })
 }
 
 /// As [`map_drawings`] for the same drawings as `before`, which the outlines' part is taken from if nothing that it is made of has

@@ -74,7 +74,7 @@ impl Workbench {
     /// # Errors
     /// [`PipelineError`] from any stage.
     pub fn new(scene: &Scene) -> Result<Self, PipelineError> {
-        Self::made(scene, None, DrawingFiles::Reread)
+        rayon::scope(|_| Self::made(scene, None, DrawingFiles::Reread))
     }
 
     /// The same for an edited scene.
@@ -82,7 +82,7 @@ impl Workbench {
     /// # Errors
     /// As [`Self::new`]; this workbench stays as it is.
     pub fn edited(&self, scene: &Scene, files: DrawingFiles) -> Result<Self, PipelineError> {
-        Self::made(scene, Some(self), files)
+        rayon::scope(|_| Self::made(scene, Some(self), files))
     }
 
     /// The same with the camera of a new one. Edits keep the camera that was there, since looking at the whole animation takes as
@@ -107,6 +107,8 @@ impl Workbench {
         }
     }
 
+    /// To be run by a thread of the pool: the stages hand thousands of small tasks to it, and from outside each of them would put
+    /// the thread to sleep.
     fn made(scene: &Scene, before: Option<&Self>, files: DrawingFiles) -> Result<Self, PipelineError> {
         let given = scene;
         // The cheap refusals first.
