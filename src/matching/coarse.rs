@@ -77,7 +77,7 @@ pub(super) fn coarse_matches(first: &Samples, second: &Samples, most: usize) -> 
 /// The same for several curves on common rows, which `rows` stand for.
 pub(super) fn coarse_matches_to(rows: Vec<f64>, first: &[Samples], second: &Samples, most: usize) -> Vec<CoarseMatch> {
     let samples = rows.len();
-    let table = MismatchTable::new(rows, first, second.clone(), Vec::new());
+    let table = MismatchTable::new(rows, first, second.clone());
     let apart = ((APART * samples as f64).round() as usize).max(1);
     cheapest_paths(&table, apart, most)
         .into_iter()

@@ -1,5 +1,7 @@
 //! The result of matching: N closed curves on one parameter.
 
+use crate::math::wrapped;
+
 /// Why rows of parameters are no correspondence.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -50,8 +52,8 @@ impl Correspondence {
                 });
             }
             for t in parameters {
-                // rem_euclid of a tiny negative number is 1.0 after rounding.
-                *t = t.rem_euclid(1.0);
+                // A tiny negative number is rounded to 1.
+                *t = wrapped(*t);
                 if *t >= 1.0 {
                     *t = 0.0;
                 }
@@ -106,7 +108,7 @@ impl Correspondence {
     /// fraction how far `t` is towards the next row. Cost O(log #rows).
     #[must_use]
     pub fn row_coordinate(&self, pose: usize, t: f64) -> f64 {
-        let t = t.rem_euclid(1.0);
+        let t = wrapped(t);
         let count = self.rows.len();
         // The row where the parameters of this pose start over.
         let first = self.first_row(pose);
@@ -122,7 +124,7 @@ impl Correspondence {
         }
         let before = (low + count - 1) % count;
         let (a, b) = (at(before), at((before + 1) % count));
-        let along = (t - a).rem_euclid(1.0) / (b - a).rem_euclid(1.0);
+        let along = wrapped(t - a) / wrapped(b - a);
         (((first + before) % count) as f64 + along.clamp(0.0, 1.0)).rem_euclid(count as f64)
     }
 
@@ -133,7 +135,7 @@ impl Correspondence {
         let coordinate = row_coordinate.rem_euclid(count as f64);
         let row = (coordinate.floor() as usize).min(count - 1);
         let (a, b) = (self.rows[row][pose], self.rows[(row + 1) % count][pose]);
-        let t = (a + (coordinate - row as f64) * (b - a).rem_euclid(1.0)).rem_euclid(1.0);
+        let t = wrapped(a + (coordinate - row as f64) * wrapped(b - a));
         if t >= 1.0 { 0.0 } else { t }
     }
 
@@ -141,7 +143,7 @@ impl Correspondence {
     #[must_use]
     pub fn carry(&self, from: usize, to: usize, t: f64) -> f64 {
         if from == to {
-            return t.rem_euclid(1.0);
+            return wrapped(t);
         }
         self.parameter(to, self.row_coordinate(from, t))
     }

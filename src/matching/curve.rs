@@ -1,6 +1,7 @@
 //! A ring prepared for matching: place and size taken out, position and turning cheap to ask for.
 
-use crate::math::{Point, angle};
+use crate::math::point::{cross, nearest_on_segment};
+use crate::math::{Point, angle, wrapped};
 use crate::outline::{ArcLength, Ring, RingError};
 
 /// Half-windows over which turning is measured, as fractions of the perimeter, with the weight each has in the match.
@@ -23,6 +24,7 @@ const FINE_SAMPLES: usize = 2048;
 #[derive(Debug, Clone)]
 pub(super) struct Curve {
     arc: ArcLength,
+    /// Even samples of two turns and a bit: what is near to a place is in one piece.
     fine: Vec<Point>,
     /// The parameter of the vertex farthest from the centroid: it depends on the shape, not on the ring's first point.
     pub(super) start: f64,
@@ -45,9 +47,11 @@ impl Curve {
             }
         }
         let start = arc.vertex_parameters()[farthest.0];
-        let fine = (0..FINE_SAMPLES)
+        let turn: Vec<Point> = (0..FINE_SAMPLES)
             .map(|k| arc.at(k as f64 / FINE_SAMPLES as f64))
             .collect();
+        let mut fine = turn.repeat(2);
+        fine.push(turn[0]);
         Ok(Self { arc, fine, start })
     }
 
@@ -59,7 +63,7 @@ impl Curve {
     /// The point at parameter `t`.
     pub(super) fn at(&self, t: f64) -> Point {
         let (index, along) = fine_position(t);
-        let (a, b) = (self.fine[index], self.fine[(index + 1) % FINE_SAMPLES]);
+        let (a, b) = (self.fine[index], self.fine[index + 1]);
         a + (b - a) * along
     }
 
@@ -70,31 +74,59 @@ impl Curve {
         angle::between(here - behind, ahead - here)
     }
 
-    /// The parameter, in `[t - reach, t + reach]`, of the point nearest to `p`; not wrapped.
+    /// The parameter, in `[t - reach, t + reach]`, of the point nearest to `p`; not wrapped. `reach` is half a turn at most.
     pub(super) fn nearest_within(&self, p: Point, t: f64, reach: f64) -> f64 {
         let count = FINE_SAMPLES as f64;
         let (first, last) = (
             ((t - reach) * count).floor() as i64,
             ((t + reach) * count).ceil() as i64,
         );
-        let mut best = (f64::INFINITY, t);
-        // What is this much farther away begins no segment that comes nearer than the point at `t`: chords are no longer
-        // than their arcs.
-        let within = (self.at(t) - p).norm() + 1.5 / count;
-        for k in first..last {
-            let index = k.rem_euclid(FINE_SAMPLES as i64) as usize;
-            let start = self.fine[index];
-            if (start - p).norm_squared() > within * within {
+        let begin = first.rem_euclid(FINE_SAMPLES as i64) as usize;
+        let points = &self.fine[begin..=begin + (last - first).clamp(0, FINE_SAMPLES as i64) as usize];
+        // Chords are no longer than their arcs: what begins farther away comes no nearer than the nearest end.
+        let within = (least_squared(points, p).sqrt() + 1.5 / count).powi(2);
+        let mut best = (f64::INFINITY, 0);
+        for (k, ends) in points.windows(2).enumerate() {
+            let (from, along) = (p - ends[0], ends[1] - ends[0]);
+            let squared = from.norm_squared();
+            if squared > within {
                 continue;
             }
-            let (along, distance) =
-                crate::math::point::nearest_on_segment(p, start, self.fine[(index + 1) % FINE_SAMPLES]);
-            if distance < best.0 {
-                best = (distance, (k as f64 + along) / count);
+            let (ahead, length_squared) = (from.dot(&along), along.norm_squared());
+            let squared = if ahead <= 0.0 {
+                squared
+            } else if ahead >= length_squared {
+                (p - ends[1]).norm_squared()
+            } else {
+                cross(along, from).powi(2) / length_squared
+            };
+            if squared < best.0 {
+                best = (squared, k);
             }
         }
-        best.1.clamp(t - reach, t + reach)
+        let Some(&[a, b]) = points[best.1..].first_chunk() else {
+            return t;
+        };
+        let (along, _) = nearest_on_segment(p, a, b);
+        (((first + best.1 as i64) as f64 + along) / count).clamp(t - reach, t + reach)
     }
+}
+
+/// The least squared distance of any of the points from `p`.
+fn least_squared(points: &[Point], p: Point) -> f64 {
+    // Several at a time, as the processor can.
+    const LANES: usize = 4;
+    let mut least = [f64::INFINITY; LANES];
+    let mut lower = |points: &[Point]| {
+        for (least, q) in least.iter_mut().zip(points) {
+            let squared = (p - q).norm_squared();
+            *least = if squared < *least { squared } else { *least };
+        }
+    };
+    let mut chunks = points.chunks_exact(LANES);
+    (&mut chunks).for_each(&mut lower);
+    lower(chunks.remainder());
+    least.into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// A curve at some parameters: what a match compares.
@@ -165,7 +197,7 @@ fn turning(curve: &Curve, parameters: &[f64], windows: Windows) -> Vec<Vec<f32>>
 
 /// The fine sample before `t`, and how far `t` is towards the next.
 fn fine_position(t: f64) -> (usize, f64) {
-    let position = t.rem_euclid(1.0) * FINE_SAMPLES as f64;
+    let position = wrapped(t) * FINE_SAMPLES as f64;
     let index = (position as usize).min(FINE_SAMPLES - 1);
     (index, position - index as f64)
 }

@@ -16,6 +16,8 @@ mod neighbours;
 
 pub(super) use neighbours::{LANES, cheapest_start, path_costs};
 
+use std::ops::Range;
+
 use super::curve::{Curve, Samples};
 use crate::math::Point;
 
@@ -38,13 +40,29 @@ pub(super) struct MismatchTable {
     rows: Vec<f64>,
     /// Parameters of the second curve's samples, likewise.
     columns: Vec<f64>,
-    /// Mismatch by row and column, in cost per unit length; each row is repeated for [`TURNS`] turns of columns.
+    /// Mismatch by row and column, in cost per unit length.
     values: Vec<f32>,
+    /// By row, the columns that have one.
+    windows: Vec<Window>,
     /// Rows that are matched to the column of the same number.
     forced: Vec<usize>,
     /// Entry `[a][i]`: the length of the step of `a` rows that ends at row `i`, counted cyclically.
     row_lengths: [Vec<f32>; LARGEST_SLOPE + 1],
     column_lengths: ColumnLengths,
+}
+
+/// The columns of a row that are compared, counted on past the first turn, and where the first one's mismatch is.
+#[derive(Debug, Clone)]
+struct Window {
+    columns: Range<usize>,
+    begin: usize,
+}
+
+impl Window {
+    /// Its mismatches among those of all rows.
+    fn of<'a>(&self, values: &'a [f32]) -> &'a [f32] {
+        &values[self.begin..self.begin + self.columns.len()]
+    }
 }
 
 /// How long steps of columns are.
@@ -73,49 +91,90 @@ impl ColumnLengths {
 
 impl MismatchTable {
     /// Compares the curves of `first`, which have common rows, with `second`; the mismatch is the mean over those curves.
-    /// `rows` are the parameters that stand for theirs. The rows in `forced`, increasing and without row 0, have to be
-    /// matched to the column of the same number.
-    pub(super) fn new(rows: Vec<f64>, first: &[Samples], second: Samples, forced: Vec<usize>) -> Self {
-        let columns = second.parameters.len();
+    /// `rows` are the parameters that stand for theirs.
+    pub(super) fn new(rows: Vec<f64>, first: &[Samples], second: Samples) -> Self {
+        let windows = vec![0..TURNS * second.parameters.len(); rows.len()];
+        let mut table = Self::empty(rows, second.parameters, Vec::new());
+        table.compare(first, &second.turning, windows);
+        table
+    }
+
+    /// The same for paths from `(0, 0)` alone that match the rows in `forced`, increasing and without row 0, to the column of
+    /// the same number. What no such path comes near is not compared.
+    pub(super) fn pinned(rows: Vec<f64>, first: &[Samples], second: Samples, forced: Vec<usize>) -> Self {
+        let mut table = Self::empty(rows, second.parameters, forced);
+        let (band, last) = (table.reachable(0), table.row_count());
+        // A step touches a row up to three before that in which it ends, and there up to three columns before.
+        const BEFORE: usize = LARGEST_SLOPE - 1;
+        let window = |row: usize| {
+            let ends = &band[row..=(row + BEFORE).min(last)];
+            let low = ends.iter().map(|end| end.0).min().unwrap_or(0);
+            let high = ends.iter().map(|end| end.1).max().unwrap_or(0);
+            low.saturating_sub(BEFORE)..high + 1
+        };
+        // Row 0 is where paths end.
+        let windows = std::iter::once(last).chain(1..last).map(window).collect();
+        table.compare(first, &second.turning, windows);
+        table
+    }
+
+    fn empty(rows: Vec<f64>, columns: Vec<f64>, forced: Vec<usize>) -> Self {
+        Self {
+            values: Vec::new(),
+            windows: Vec::new(),
+            row_lengths: step_lengths(&rows, 1),
+            column_lengths: ColumnLengths::new(&columns),
+            rows,
+            columns,
+            forced,
+        }
+    }
+
+    fn compare(&mut self, first: &[Samples], second: &[Vec<f32>], windows: Vec<Range<usize>>) {
+        let count = self.column_count();
         let scale = TURNING_COST / first.len() as f32;
-        let mut values = Vec::with_capacity(TURNS * rows.len() * columns);
-        for row in 0..rows.len() {
-            let begin = values.len();
-            values.resize(begin + columns, 0.0);
+        // Two turns, so that one from any column on is in one piece.
+        let second: Vec<Vec<f32>> = second.iter().map(|turning| turning.repeat(2)).collect();
+        self.values.reserve(windows.iter().map(Range::len).sum());
+        for (row, columns) in windows.into_iter().enumerate() {
+            let begin = self.values.len();
+            self.values.resize(begin + columns.len().min(count), 0.0);
+            let values = &mut self.values[begin..];
             for curve in first {
-                for (own, others) in curve.turning.iter().zip(&second.turning) {
+                for (own, others) in curve.turning.iter().zip(&second) {
                     let own = own[row];
-                    for (value, other) in values[begin..].iter_mut().zip(others) {
+                    for (value, other) in values.iter_mut().zip(&others[columns.start % count..]) {
                         *value += (own - other).abs();
                     }
                 }
             }
-            for value in &mut values[begin..] {
+            for value in values {
                 *value *= scale;
             }
-            for _ in 1..TURNS {
-                values.extend_from_within(begin..begin + columns);
+            // The turns after the first repeat it.
+            let end = begin + columns.len();
+            while self.values.len() < end {
+                let turn = self.values.len() - count;
+                self.values.extend_from_within(turn..(turn + count).min(end - count));
             }
-        }
-        Self {
-            row_lengths: step_lengths(&rows, 1),
-            column_lengths: ColumnLengths::new(&second.parameters),
-            rows,
-            columns: second.parameters,
-            values,
-            forced,
+            self.windows.push(Window { columns, begin });
         }
     }
 
     /// The table with a cost for the distance from where each row's point is expected to be on the second curve.
     pub(super) fn drawn_to(mut self, expected: &[Point], second: &Curve, cost_per_distance: f32) -> Self {
+        let count = self.column_count();
         let points: Vec<Point> = self.columns.iter().map(|t| second.at(*t)).collect();
-        for (row, target) in expected.iter().enumerate() {
-            let width = TURNS * points.len();
-            let values = &mut self.values[row * width..(row + 1) * width];
-            for turn in values.chunks_exact_mut(points.len()) {
-                for (value, p) in turn.iter_mut().zip(&points) {
-                    *value += cost_per_distance * (target - p).norm() as f32;
+        let points = points.repeat(2);
+        let mut pull = Vec::with_capacity(count);
+        for (window, target) in self.windows.iter().zip(expected) {
+            let points = &points[window.columns.start % count..][..count.min(window.columns.len())];
+            pull.clear();
+            pull.extend(points.iter().map(|p| cost_per_distance * (target - p).norm() as f32));
+            let values = &mut self.values[window.begin..window.begin + window.columns.len()];
+            for turn in values.chunks_mut(count) {
+                for (value, pull) in turn.iter_mut().zip(&pull) {
+                    *value += pull;
                 }
             }
         }
@@ -161,11 +220,11 @@ impl MismatchTable {
         band
     }
 
-    /// The mismatches of a row, counted cyclically, by column.
-    fn mismatches(&self, row: usize) -> &[f32] {
-        let width = TURNS * self.column_count();
-        let begin = (row % self.row_count()) * width;
-        &self.values[begin..begin + width]
+    /// The mismatches of a row, counted cyclically, with some of its columns.
+    fn mismatches(&self, row: usize, columns: Range<usize>) -> &[f32] {
+        let window = &self.windows[row % self.row_count()];
+        let first = window.columns.start;
+        &window.of(&self.values)[columns.start - first..columns.end - first]
     }
 }
 
@@ -253,7 +312,7 @@ pub(super) fn cheapest_path(table: &MismatchTable, start: usize, band: &[(usize,
             let (costs, chosen) = (&mut costs[span(band[i].0)], &mut chosen[span(band[i].0)]);
             // The mismatch along the step: at its end, and at the nodes nearest to its inner even divisions.
             let divisions = a.max(b);
-            let at = |inner: usize| &table.mismatches(i - inner * a / divisions)[span(inner * b / divisions)];
+            let at = |inner: usize| table.mismatches(i - inner * a / divisions, span(inner * b / divisions));
             let share = 0.5 / divisions as f32;
             let step = index as u32;
             let lengths = Lengths { ds1, ds2, share };

@@ -1,6 +1,7 @@
 //! Landmarks: points that an artist names on several poses.
 
 use super::MatchError;
+use crate::math::wrapped;
 use crate::outline::parameter_gap;
 
 /// Landmarks nearer to one another than this, in perimeters, are at the same place: less than a tenth of a pixel on any
@@ -38,7 +39,7 @@ pub(super) fn validated(landmarks: &[Landmark], poses: usize) -> Result<Vec<Land
                         pose,
                     });
                 }
-                *t = t.rem_euclid(1.0) % 1.0;
+                *t = wrapped(*t) % 1.0;
             }
         }
     }

@@ -23,8 +23,8 @@ use super::landmark::{Landmark, validated};
 use super::monotone::CyclicMap;
 use super::pair::{PairMatch, Pin, match_pose};
 use super::{Correspondence, MatchError, SalientPoint};
-use crate::math::Point;
 use crate::math::point::cross;
+use crate::math::{Point, wrapped};
 use crate::outline::Ring;
 
 /// Samples of the coarse matches that choose the reference.
@@ -299,7 +299,7 @@ fn carry_to_reference(forms: &[Form], reference: usize, landmarks: &mut [Landmar
             .map(|place| place - places[0] - (place - places[0]).round())
             .sum();
         let mean = places[0] + offset / places.len() as f64;
-        landmarks[missing].at[reference] = Some(mean.rem_euclid(1.0) % 1.0);
+        landmarks[missing].at[reference] = Some(wrapped(mean) % 1.0);
     }
     Ok(())
 }

@@ -18,7 +18,7 @@ use super::curve::Samples;
 use super::elastic::{Band, MismatchTable, cheapest_path, cheapest_start, step_cost};
 use super::frame::{CONTROL_STRIDE, Frame, Model, ModelCurve, RowSamples, STIFFNESSES};
 use super::monotone::{CyclicMap, limit_steps, make_increasing};
-use crate::math::{Point, angle};
+use crate::math::{Point, angle, wrapped};
 
 /// How many starts get a closer look.
 const CANDIDATES: usize = 4;
@@ -117,14 +117,14 @@ impl Task<'_> {
     fn table(&self) -> MismatchTable {
         let first_row = self.pins.first().map_or(0, |pin| pin.row);
         let (rows, curves) = self.model.samples(first_row, ELASTIC_STRIDE);
-        let columns = match self.pins {
-            [] => self.pose.even_parameters(rows.len()),
-            _ => self.pinned_columns().into_iter().step_by(ELASTIC_STRIDE).collect(),
-        };
+        if self.pins.is_empty() {
+            let columns = self.pose.even_parameters(rows.len());
+            return MismatchTable::new(rows, &curves, Samples::fine(&self.pose.curve, columns));
+        }
+        let columns = self.pinned_columns().into_iter().step_by(ELASTIC_STRIDE).collect();
         let forced = self.pins.iter().skip(1);
         let forced = forced.map(|pin| (pin.row - first_row) / ELASTIC_STRIDE).collect();
-        let columns = Samples::fine(&self.pose.curve, columns);
-        MismatchTable::new(rows, &curves, columns, forced)
+        MismatchTable::pinned(rows, &curves, Samples::fine(&self.pose.curve, columns), forced)
     }
 
     /// By row from the first pin's on, the parameter of the pose in even steps between pins.
@@ -138,9 +138,9 @@ impl Task<'_> {
                 None => (count, pins[0].parameter),
             };
             // One pin alone spans the whole turn.
-            let gap = (closing - pin.parameter).rem_euclid(1.0);
+            let gap = wrapped(closing - pin.parameter);
             let gap = if gap == 0.0 { 1.0 } else { gap };
-            let base = pins[0].parameter + (pin.parameter - pins[0].parameter).rem_euclid(1.0);
+            let base = pins[0].parameter + wrapped(pin.parameter - pins[0].parameter);
             for (k, column) in columns.iter_mut().enumerate().take(end).skip(begin) {
                 *column = base + gap * (k - begin) as f64 / (end - begin) as f64;
             }
@@ -306,7 +306,7 @@ fn settle(parameters: &mut [f64], pins: &[Pin], change: impl Fn(&mut [f64], &[us
         parameters[0] = first.parameter + (parameters[0] - first.parameter).round();
         for pin in others {
             let row = pin.row - cut;
-            parameters[row] = parameters[0] + (pin.parameter - first.parameter).rem_euclid(1.0);
+            parameters[row] = parameters[0] + wrapped(pin.parameter - first.parameter);
             pinned.push(row);
         }
     }

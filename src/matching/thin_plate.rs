@@ -9,7 +9,7 @@
 
 use nalgebra::{DMatrix, Dyn, LU};
 
-use crate::math::Point;
+use crate::math::{Point, point, vectorised};
 
 /// A family of smoothing splines with the same control points, one for each stiffness.
 #[derive(Debug, Clone)]
@@ -60,12 +60,19 @@ impl ThinPlate {
         let m = self.control_count;
         let right = DMatrix::from_fn(m + 3, 2, |i, j| if i < m { targets[i][j] } else { 0.0 });
         let coefficients = self.factors[level].solve(&right)?;
-        let carried = &self.basis * coefficients;
-        let points: Vec<Point> = carried.row_iter().map(|row| Point::new(row[0], row[1])).collect();
-        points
-            .iter()
-            .all(|p| crate::math::point::is_finite(*p))
-            .then_some(points)
+        let mut points = vec![Point::zeros(); self.basis.nrows()];
+        vectorised(
+            #[inline(always)]
+            || {
+                for (coefficient, values) in coefficients.row_iter().zip(self.basis.column_iter()) {
+                    let (x, y) = (coefficient[0], coefficient[1]);
+                    for (p, value) in points.iter_mut().zip(values.as_slice()) {
+                        *p += Point::new(value * x, value * y);
+                    }
+                }
+            },
+        );
+        points.iter().all(|p| point::is_finite(*p)).then_some(points)
     }
 }
 

@@ -16,6 +16,7 @@ mod restricted;
 pub mod sine;
 pub mod smooth_step;
 mod vectorised;
+mod wrapped;
 
 pub use matrix::{Matrix, PolarSplit, rotation};
 pub use point::Point;
@@ -23,3 +24,4 @@ pub use point3::Point3;
 pub use restricted::restricted_weights;
 pub use smooth_step::{limit_weights, smooth_step};
 pub use vectorised::vectorised;
+pub use wrapped::wrapped;

@@ -1,7 +1,7 @@
 //! A ring measured by arc length.
 
 use super::Ring;
-use crate::math::{Point, point};
+use crate::math::{Point, point, wrapped};
 
 /// The arc-length parameter of a ring: 0 at its first point, growing along it, 1 back at the first point.
 ///
@@ -67,7 +67,7 @@ impl ArcLength {
     /// The edge that holds parameter `t` (taken modulo 1) and how far along that edge it lies, in `[0, 1]`.
     #[must_use]
     pub fn locate(&self, t: f64) -> (usize, f64) {
-        let t = t.rem_euclid(1.0);
+        let t = wrapped(t);
         let count = self.points.len();
         // The last edge that does not begin after `t`; rounding may have put the guide one edge too far.
         let mut edge = self.guide[((t * count as f64) as usize).min(count - 1)];
@@ -108,7 +108,7 @@ impl ArcLength {
             let (along, distance) = point::nearest_on_segment(p, a, b);
             let on_edge = self.parameters[edge] + along * (self.parameters[edge + 1] - self.parameters[edge]);
             if distance < best.1 {
-                best = (on_edge.rem_euclid(1.0), distance);
+                best = (wrapped(on_edge), distance);
             }
             edge = self.passed(edge, on_edge + (distance - best.1.min(within)) / self.perimeter);
         }
@@ -136,7 +136,7 @@ impl ArcLength {
 /// How far two parameters of a closed curve are apart, the shorter way around: at most 1/2.
 #[must_use]
 pub fn parameter_gap(a: f64, b: f64) -> f64 {
-    let gap = (a - b).rem_euclid(1.0);
+    let gap = wrapped(a - b);
     gap.min(1.0 - gap)
 }
 

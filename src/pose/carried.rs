@@ -7,7 +7,7 @@
 
 use rstar::{AABB, RTree, primitives::GeomWithData, primitives::Rectangle};
 
-use crate::math::{Point, point};
+use crate::math::{Point, point, wrapped};
 use crate::mesh::{PointLocator, Topology};
 use crate::outline::{Outline, OutlineError, Ring, RingError};
 
@@ -74,7 +74,7 @@ impl CarriedOutline {
     /// The parameter on the carried ring (0 is the outer one) of the point at parameter `t` of the ring it was.
     #[must_use]
     pub fn parameter(&self, ring: usize, t: f64) -> f64 {
-        let t = t.rem_euclid(1.0);
+        let t = wrapped(t);
         let Some(Parameters { before, after }) = self.rings.get(ring) else {
             return t;
         };

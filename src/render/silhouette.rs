@@ -15,7 +15,7 @@
 use rayon::prelude::*;
 
 use crate::matching::Correspondence;
-use crate::math::Point;
+use crate::math::{Point, wrapped};
 use crate::mesh::{MeshPoint, PointLocator};
 use crate::outline::{ArcLength, Ring};
 use crate::pose::Mapping;
@@ -111,7 +111,7 @@ fn row_coordinates(correspondence: &Correspondence, curves: &[ArcLength]) -> Vec
         let is_apart = kept.last().is_none_or(|last| {
             (0..curves.len()).any(|pose| {
                 let gap = correspondence.parameter(pose, row) - correspondence.parameter(pose, *last);
-                gap.rem_euclid(1.0).min((-gap).rem_euclid(1.0)) > CLOSEST_ROWS
+                wrapped(gap).min(wrapped(-gap)) > CLOSEST_ROWS
             })
         });
         if is_apart {
@@ -134,9 +134,8 @@ fn correspondence_by_mesh(mapping: &Mapping, ring: usize, curves: &[&Ring]) -> C
             .map(|(curve, positions)| curve.nearest(positions[vertex]).0)
             .collect();
         // After the row before, and not beyond the first: less than a turn from it, on every pose.
-        let ahead = |from: &[f64], to: &[f64]| -> Vec<f64> {
-            from.iter().zip(to).map(|(a, b)| (b - a).rem_euclid(1.0)).collect()
-        };
+        let ahead =
+            |from: &[f64], to: &[f64]| -> Vec<f64> { from.iter().zip(to).map(|(a, b)| wrapped(b - a)).collect() };
         let fits = match (rows.first(), rows.last()) {
             (Some(first), Some(last)) => {
                 let (travelled, next) = (ahead(first, last), ahead(last, &row));

@@ -18,7 +18,7 @@ use std::collections::BinaryHeap;
 
 use super::edge_grid::EdgeGrid;
 use super::tuples::{Tuple, TupleRing};
-use crate::math::{Point, point, predicate};
+use crate::math::{Point, point, predicate, wrapped};
 use crate::outline::{ArcLength, Ring};
 
 /// A vertex counts as straight if it is convex by less than this, as a fraction of the pose's size: points that
@@ -346,7 +346,7 @@ impl<'a> Collapser<'a> {
         let parameter_of = |v: usize| self.tuples[v].parameters[pose];
         let (tb, tc) = (parameter_of(b), parameter_of(c));
         // A point of the chain, or failing that the middle of its parameters.
-        let middle = (tb + 0.5 * (tc - tb).rem_euclid(1.0)).rem_euclid(1.0);
+        let middle = wrapped(tb + 0.5 * wrapped(tc - tb));
         let nearest = ring
             .between(tb, tc)
             .map(|(t, p)| ((p - apex).norm(), t))
@@ -377,8 +377,8 @@ impl<'a> Collapser<'a> {
             return false;
         }
         let (ta, td) = (self.tuples[a].parameters[pose], self.tuples[d].parameters[pose]);
-        let span = (td - ta).rem_euclid(1.0);
-        let at = (merge.parameter - ta).rem_euclid(1.0);
+        let span = wrapped(td - ta);
+        let at = wrapped(merge.parameter - ta);
         if !(at > 0.0 && at < span) {
             return false;
         }

@@ -1,7 +1,7 @@
 //! Rings of corresponding vertices: what the simplification works on.
 
 use crate::matching::Correspondence;
-use crate::math::{Point, point};
+use crate::math::{Point, point, wrapped};
 use crate::outline::{ArcLength, Ring, parameter_gap};
 
 /// A closed ring of vertex tuples: vertex `k` has one point and one boundary parameter in every pose.
@@ -123,9 +123,9 @@ impl TupleRing {
         let after = self.tuples.partition_point(|tuple| tuple.parameters[0] <= t);
         let (before, after) = (&self.tuples[(after + count - 1) % count], &self.tuples[after % count]);
         let (start, end) = (before.parameters[0], after.parameters[0]);
-        let span = (end - start).rem_euclid(1.0);
+        let span = wrapped(end - start);
         let along = if span > 0.0 {
-            ((t - start).rem_euclid(1.0) / span).clamp(0.0, 1.0)
+            (wrapped(t - start) / span).clamp(0.0, 1.0)
         } else {
             0.0
         };
@@ -206,10 +206,10 @@ fn distance_along(correspondence: &Correspondence, pose: usize, coordinate: f64,
     let rows = correspondence.rows();
     let row = (coordinate.floor() as usize).min(rows.len() - 1);
     let (from, to) = (rows[row][pose], rows[(row + 1) % rows.len()][pose]);
-    let step = (to - from).rem_euclid(1.0) * (coordinate - row as f64);
-    let off = (t - (from + step)).rem_euclid(1.0);
+    let step = wrapped(to - from) * (coordinate - row as f64);
+    let off = wrapped(t - (from + step));
     let signed = if off > 0.5 { off - 1.0 } else { off };
-    (from - rows[0][pose]).rem_euclid(1.0) + step + signed
+    wrapped(from - rows[0][pose]) + step + signed
 }
 
 /// The tuples without those that do not follow their predecessor in some pose, in place or in distance along it; of two,

@@ -70,9 +70,6 @@ fn sweep(
     }
 
     let mut prices: [Vec<f32>; STEPS.len()] = std::array::from_fn(|_| vec![0.0; width]);
-    let mut forced = table.forced.iter().copied().peekable();
-    // A step may not jump over a row that is forced.
-    let mut earliest = 0;
     for i in 1..=rows {
         let mut costs = std::mem::take(&mut kept[i % KEPT]);
         if let Some(gone) = i.checked_sub(KEPT)
@@ -86,7 +83,7 @@ fn sweep(
             let mut fixed = [0.0; STEPS.len()];
             let mut before = [&outside[..count]; STEPS.len()];
             for (index, &(a, b)) in STEPS.iter().enumerate() {
-                if i < earliest + a {
+                if i < a {
                     continue;
                 }
                 before[index] = &kept[(i - a) % KEPT][place(low) - b..][..count];
@@ -98,7 +95,7 @@ fn sweep(
                 let begin = low.max(b);
                 let span = |slice: usize| begin - slice..(high + 1).max(begin) - slice;
                 let prices = &mut prices[index][begin.min(high + 1) - low..count];
-                let at = |inner: usize| &table.mismatches(i - inner * a / divisions)[span(inner * b / divisions)];
+                let at = |inner: usize| table.mismatches(i - inner * a / divisions, span(inner * b / divisions));
                 match divisions {
                     1 => price(prices, factor, [at(0)]),
                     2 => price(prices, factor, [at(0), at(1)]),
@@ -110,10 +107,6 @@ fn sweep(
             lower(&mut costs[place(low)..=place(high)], before, prices, fixed);
         }
         kept[i % KEPT] = costs;
-        if forced.peek() == Some(&i) {
-            earliest = i;
-            forced.next();
-        }
     }
     std::array::from_fn(|lane| {
         let end = first + lane + columns;

@@ -17,14 +17,13 @@ fn even(count: usize) -> Vec<f64> {
     (0..count).map(|k| k as f64 / count as f64).collect()
 }
 
-fn compared(first: &Curve, rows: Vec<f64>, second: &Curve, columns: Vec<f64>, forced: Vec<usize>) -> MismatchTable {
-    let samples = |curve: &Curve, parameters: Vec<f64>| Samples::fine(curve, parameters);
-    let first = samples(first, rows.clone());
-    MismatchTable::new(rows, &[first], samples(second, columns), forced)
+fn compared(first: &Curve, rows: Vec<f64>, second: &Curve, columns: Vec<f64>) -> MismatchTable {
+    let first = Samples::fine(first, rows.clone());
+    MismatchTable::new(rows, &[first], Samples::fine(second, columns))
 }
 
 fn table(count: usize) -> MismatchTable {
-    compared(&wavy(0.1, 0.0), even(count), &wavy(0.15, 1.0), even(count), Vec::new())
+    compared(&wavy(0.1, 0.0), even(count), &wavy(0.15, 1.0), even(count))
 }
 
 /// The definition, by recursion over all nodes: the cost of the cheapest way from `(0, start)` to each node.
@@ -40,7 +39,8 @@ fn naive_cost(table: &MismatchTable, start: usize) -> f32 {
                 }
                 let divisions = a.max(b);
                 let mismatch: f32 = (0..divisions)
-                    .map(|inner| table.mismatches(i - inner * a / divisions)[j - inner * b / divisions])
+                    .map(|inner| (i - inner * a / divisions, j - inner * b / divisions))
+                    .map(|(row, column)| table.mismatches(row, column..column + 1)[0])
                     .sum();
                 let ds1 = table.row_parameter(i) - table.row_parameter(i - a);
                 let ds2 = table.column_parameter(j) - table.column_parameter(j - b);
@@ -69,7 +69,7 @@ fn the_cheapest_path_is_that_of_the_definition() {
 #[test]
 fn a_curve_matches_itself_along_the_diagonal() {
     let curve = wavy(0.1, 0.0);
-    let table = compared(&curve, even(32), &curve, even(32), Vec::new());
+    let table = compared(&curve, even(32), &curve, even(32));
     let path = cheapest_path(&table, 0, &table.reachable(0)).expect("a path");
     assert_eq!(path.cost, 0.0);
     assert!(path.nodes.iter().all(|(i, j)| i == j));
@@ -86,9 +86,31 @@ fn paths_go_through_forced_rows() {
             }
         })
         .collect();
-    let table = compared(&wavy(0.1, 0.0), even(32), &wavy(0.15, 0.0), columns, vec![8]);
-    let path = cheapest_path(&table, 0, &table.reachable(0)).expect("a path");
-    assert!(path.nodes.contains(&(8, 8)));
+    let (first, second) = (wavy(0.1, 0.0), wavy(0.15, 0.0));
+    let sampled = || {
+        (
+            even(32),
+            [Samples::fine(&first, even(32))],
+            Samples::fine(&second, columns.clone()),
+        )
+    };
+    let targets: Vec<Point> = (0..32).map(|k| second.at(k as f64 / 31.0)).collect();
+    for forced in [vec![], vec![8], vec![3, 8, 9, 21]] {
+        let (rows, curves, other) = sampled();
+        let pinned = MismatchTable::pinned(rows, &curves, other, forced.clone());
+        let path = cheapest_path(&pinned, 0, &pinned.reachable(0)).expect("a path");
+        assert!(forced.iter().all(|&k| path.nodes.contains(&(k, k))));
+        // What is not compared makes no difference.
+        let (rows, curves, other) = sampled();
+        let mut whole = MismatchTable::new(rows, &curves, other);
+        whole.forced = forced;
+        assert_eq!(cheapest_path(&whole, 0, &whole.reachable(0)), Some(path));
+        let drawn = [pinned, whole].map(|table| {
+            let table = table.drawn_to(&targets, &second, 3.0);
+            cheapest_path(&table, 0, &table.reachable(0)).expect("a path")
+        });
+        assert_eq!(drawn[0], drawn[1]);
+    }
 }
 
 #[test]
@@ -105,24 +127,22 @@ fn dividing_the_starts_finds_the_best_of_all() {
 
 #[test]
 fn the_cheapest_start_is_that_of_the_cheapest_path() {
-    for forced in [vec![], vec![7, 16]] {
-        let uneven = (0..24).map(|k| (k as f64 / 24.0).powf(1.2)).collect();
-        for columns in [even(24), uneven] {
-            let table = compared(&wavy(0.1, 0.0), even(24), &wavy(0.15, 1.0), columns, forced.clone());
-            for (first, last, reach) in [(0_usize, 4_usize, 3_usize), (9, 31, 20), (20, 23, 6)] {
-                // A straight band about the middle start: it holds some paths from some of the starts.
-                let middle = (first + last) / 2;
-                let band: Vec<_> = (0..=24)
-                    .map(|i| ((middle + i).saturating_sub(reach), middle + i + reach))
-                    .collect();
-                let paths = (first..=last).filter_map(|start| Some((start, cheapest_path(&table, start, &band)?.cost)));
-                let best = paths.reduce(|a, b| if b.1 < a.1 { b } else { a });
-                assert_eq!(
-                    cheapest_start(&table, first..=last, &band),
-                    best.map(|(start, _)| start)
-                );
-                assert!(best.is_some() || !forced.is_empty());
-            }
+    let uneven = (0..24).map(|k| (k as f64 / 24.0).powf(1.2)).collect();
+    for columns in [even(24), uneven] {
+        let table = compared(&wavy(0.1, 0.0), even(24), &wavy(0.15, 1.0), columns);
+        for (first, last, reach) in [(0_usize, 4_usize, 3_usize), (9, 31, 20), (20, 23, 6)] {
+            // A straight band about the middle start: it holds some paths from some of the starts.
+            let middle = (first + last) / 2;
+            let band: Vec<_> = (0..=24)
+                .map(|i| ((middle + i).saturating_sub(reach), middle + i + reach))
+                .collect();
+            let paths = (first..=last).filter_map(|start| Some((start, cheapest_path(&table, start, &band)?.cost)));
+            let best = paths.reduce(|a, b| if b.1 < a.1 { b } else { a });
+            assert_eq!(
+                cheapest_start(&table, first..=last, &band),
+                best.map(|(start, _)| start)
+            );
+            assert!(best.is_some());
         }
     }
 }

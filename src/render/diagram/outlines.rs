@@ -6,7 +6,7 @@ use super::canvas::Canvas;
 use super::labels::{Area, LEADER_PX, Labels, Need};
 use super::layout::Cell;
 use super::{Diagram, INK, Sections, cost_colour, faint, hue, mark_size};
-use crate::math::{Point, point};
+use crate::math::{Point, point, wrapped};
 use crate::outline::ArcLength;
 use crate::pose::{LandmarkKind, PlacedLandmark};
 
@@ -39,7 +39,7 @@ impl Placed<'_> {
 
     /// The points from one parameter on to another, not a whole turn.
     fn between(&self, from: f64, to: f64) -> Vec<Point> {
-        let length = (to - from).rem_euclid(1.0);
+        let length = wrapped(to - from);
         let steps = 2 + (length * SAMPLES) as usize;
         (0..=steps)
             .map(|k| self.at(from + length * k as f64 / steps as f64))
@@ -156,7 +156,7 @@ fn draw_labels(
     };
     for k in doubtful.into_iter().take(LABELLED) {
         let (from, to) = (links[k].at[pose], links[(k + 1) % links.len()].at[pose]);
-        let middle = from + 0.5 * (to - from).rem_euclid(1.0);
+        let middle = from + 0.5 * wrapped(to - from);
         let (first, second) = sections.numbers(k);
         let words = format!("{first} TO {second}: {:.1}", sections.costs(pose)[k]);
         let (place, outward) = (here.at(middle), here.outward(middle));

@@ -10,6 +10,7 @@
 //! Cost O((#rows + #links^2) x #poses).
 
 use crate::matching::MatchReport;
+use crate::math::wrapped;
 use crate::outline::{ArcLength, parameter_gap};
 use crate::pose::{LandmarkKind, Mapping, PlacedLandmark};
 
@@ -197,7 +198,7 @@ fn mean_mismatch(mapping: &Mapping, pose: usize, mismatch: &[f64], (from, to): (
     while row < end {
         let share = (row + 1.0).min(end) - row.max(from);
         let here = row as usize % rows.len();
-        let step = |pose: usize| (rows[(here + 1) % rows.len()][pose] - rows[here][pose]).rem_euclid(1.0);
+        let step = |pose: usize| wrapped(rows[(here + 1) % rows.len()][pose] - rows[here][pose]);
         let own = share * 0.5 * (step(reference) + step(pose));
         cost += own * mismatch.get(here).copied().unwrap_or(0.0);
         length += own;
