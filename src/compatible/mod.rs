@@ -23,7 +23,9 @@ mod simplify;
 mod triangulate;
 
 pub use refine::{RefineError, RefineOptions, RefineReport, refine};
-pub use simplify::{Simplification, Simplified, SimplifyError, SimplifyOptions, SimplifyReport, simplify};
+pub use simplify::{
+    Simplification, Simplified, SimplifiedAlone, SimplifyError, SimplifyOptions, SimplifyReport, simplify,
+};
 pub use triangulate::{
     Effort, Feature, FeaturePath, Features, PathEnd, TriangulateError, TriangulateReport, triangulate,
     triangulate_features,

@@ -1,7 +1,7 @@
 //! The outlines' part of a mapping: matched, and simplified to polygons with corresponding vertices.
 
 use super::{PipelineError, Stage};
-use crate::compatible::{Simplification, Simplified, SimplifyError, SimplifyOptions};
+use crate::compatible::{Simplification, Simplified, SimplifiedAlone, SimplifyError, SimplifyOptions};
 use crate::input::Drawing;
 use crate::matching::{Correspondence, Landmark, MatchError, MatchOptions, MatchReport, MirrorHints, match_rings};
 use crate::math::Point;
@@ -35,20 +35,21 @@ impl Boundaries {
     ) -> Result<Self, PipelineError> {
         begins(Stage::Matching);
         let mut outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
-        let matched = match_outlines(scene, &mut outlines, on_outline)?;
+        let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
+        let refusal = |error| simplify_refusal(&scene.names(), error);
+        let given = outlines.clone();
+        // Matching goes from pose to pose and leaves most processors idle.
+        let (matched, alone) = rayon::join(
+            || match_outlines(scene, &mut outlines, on_outline),
+            || alone(&given, on_outline, &options, before),
+        );
+        let (matched, alone) = (matched?, alone.map_err(refusal)?);
         begins(Stage::Simplification);
         let pinned: Vec<Vec<f64>> = on_outline
             .iter()
             .filter_map(|landmark| everywhere(landmark, &matched.correspondences[0]))
             .collect();
-        let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
-        let refusal = |error| simplify_refusal(&scene.names(), error);
-        let simplification = match before {
-            Some(before) => before
-                .simplification
-                .again(&outlines, &matched.correspondences, &pinned, &options),
-            None => Simplification::new(&outlines, &matched.correspondences, &pinned, &options),
-        };
+        let simplification = Simplification::with(&outlines, &matched.correspondences, &pinned, &options, &alone);
         let mut simplification = simplification.map_err(refusal)?;
         let simplified = simplification.polygons().map_err(refusal)?;
         Ok(Self {
@@ -67,6 +68,21 @@ impl Boundaries {
     pub(super) fn serve(&self, scene: &Scene, on_outline: &[Landmark]) -> bool {
         self.on_outline == on_outline && self.reference == scene.reference && self.tolerance == scene.mesh.simplify
     }
+}
+
+/// The outlines simplified alone, but for poses that lack a landmark: its place comes from the matching.
+fn alone(
+    outlines: &[Outline],
+    on_outline: &[Landmark],
+    options: &SimplifyOptions,
+    before: Option<&Boundaries>,
+) -> Result<SimplifiedAlone, SimplifyError> {
+    let known = on_outline
+        .iter()
+        .filter(|landmark| landmark.at.iter().any(Option::is_some));
+    let known: Vec<Vec<Option<f64>>> = known.map(|landmark| landmark.at.clone()).collect();
+    let before = before.map(|before| before.simplification.alone()).unwrap_or_default();
+    SimplifiedAlone::new(outlines, &known, options, &before)
 }
 
 /// All rings, matched.

@@ -9,7 +9,7 @@ use crate::pose::{MeshQuality, PlacedLandmark};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Which point of every outline corresponds to which.
+    /// Which point of every outline corresponds to which; meanwhile each outline is simplified alone.
     Matching,
     /// Polygons with corresponding vertices.
     Simplification,

@@ -38,10 +38,8 @@ impl Silhouette {
     pub fn new(mapping: &Mapping) -> Self {
         let pose_count = mapping.poses.len();
         let triangles = mapping.poses.topology().triangles();
-        let locators: Vec<PointLocator> = mapping
-            .poses
-            .positions()
-            .iter()
+        let positions = mapping.poses.positions().par_iter();
+        let locators: Vec<PointLocator> = positions
             .map(|positions| PointLocator::new(triangles, positions))
             .collect();
         let ring_count = mapping.outlines.iter().map(|o| o.rings().len()).min().unwrap_or(0);
@@ -97,14 +95,12 @@ impl Silhouette {
 /// The row coordinates of every row and of every vertex of every curve, sorted, near ones left out.
 fn row_coordinates(correspondence: &Correspondence, curves: &[ArcLength]) -> Vec<f64> {
     let mut rows: Vec<f64> = (0..correspondence.rows().len()).map(|k| k as f64).collect();
-    for (pose, curve) in curves.iter().enumerate() {
-        rows.extend(
-            curve
-                .vertex_parameters()
-                .iter()
-                .map(|t| correspondence.row_coordinate(pose, *t)),
-        );
-    }
+    let of_pose = |(pose, curve): (usize, &ArcLength)| -> Vec<f64> {
+        let vertices = curve.vertex_parameters().iter();
+        vertices.map(|t| correspondence.row_coordinate(pose, *t)).collect()
+    };
+    let of_poses: Vec<Vec<f64>> = curves.par_iter().enumerate().map(of_pose).collect();
+    rows.extend(of_poses.iter().flatten());
     rows.sort_by(f64::total_cmp);
     let mut kept: Vec<f64> = Vec::with_capacity(rows.len());
     for row in rows {

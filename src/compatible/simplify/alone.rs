@@ -1,13 +1,76 @@
 //! Each outline simplified alone, before they are joined: several times fewer tuples than of full outlines.
 
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
 use super::collapse::{Collapser, OriginalRing, PoseOriginal};
 use super::tuples::{Pin, TupleRing};
+use super::{SimplifyError, SimplifyOptions};
 use crate::outline::{Outline, Ring};
+
+/// How much finer than the tolerance each outline alone is simplified first: fine enough that the joint step, not
+/// this one, decides the shape.
+const PRELIMINARY_SHARE: f64 = 0.05;
 
 /// A shape is thin if its diagonal exceeds this many of its mean half-widths; its deviation is then measured against
 /// those instead, or the polygon would be half as wide again as the shape. With the default tolerance it may deviate by
 /// 0.32 half-widths.
 const THIN_SHAPE: f64 = 16.0;
+
+/// Outlines simplified each alone: what of a simplification needs no correspondence, so that it can be made while that is looked
+/// for.
+#[derive(Debug, Clone, Default)]
+pub struct SimplifiedAlone {
+    /// One a pose; none where a landmark's place is not known.
+    pub(super) poses: Vec<Option<Arc<PoseAlone>>>,
+    pub(super) tolerance: f64,
+}
+
+impl SimplifiedAlone {
+    /// Simplifies those of the outlines whose landmarks all have a place: `landmarks` are #landmarks x #poses, each a parameter
+    /// of the outer ring. What is in `before` already is taken from there.
+    ///
+    /// # Errors
+    /// [`SimplifyError::BadTolerance`].
+    pub fn new(
+        outlines: &[Outline],
+        landmarks: &[Vec<Option<f64>>],
+        options: &SimplifyOptions,
+        before: &Self,
+    ) -> Result<Self, SimplifyError> {
+        options.check()?;
+        let known = |pose: usize| -> Option<Vec<Pin>> {
+            let numbered = landmarks.iter().enumerate();
+            numbered
+                .map(|(landmark, row)| {
+                    let parameter = (*row.get(pose)?)?;
+                    Some(Pin { landmark, parameter })
+                })
+                .collect()
+        };
+        let pins: Vec<Option<Vec<Pin>>> = (0..outlines.len()).map(known).collect();
+        Ok(before.for_pins(outlines, &pins, options.tolerance))
+    }
+
+    /// Those for some landmarks a pose, from these as far as they are the same; none where there are no landmarks given.
+    pub(super) fn for_pins(&self, outlines: &[Outline], pins: &[Option<Vec<Pin>>], tolerance: f64) -> Self {
+        let pose = |(pose, (outline, pins)): (usize, (&Outline, &Option<Vec<Pin>>))| {
+            let pins = pins.as_ref()?;
+            let made = self.poses.get(pose).and_then(Option::as_ref);
+            let is_same =
+                |made: &&Arc<PoseAlone>| self.tolerance == tolerance && made.pins == *pins && made.outline == *outline;
+            Some(match made.filter(is_same) {
+                Some(same) => Arc::clone(same),
+                None => Arc::new(PoseAlone::new(outline, pins.clone(), PRELIMINARY_SHARE * tolerance)),
+            })
+        };
+        Self {
+            poses: outlines.par_iter().zip(pins).enumerate().map(pose).collect(),
+            tolerance,
+        }
+    }
+}
 
 /// What a simplification makes of each pose without regard to the others.
 #[derive(Debug)]

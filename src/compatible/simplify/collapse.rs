@@ -134,6 +134,8 @@ pub(super) struct Collapser<'a> {
     previous: Vec<usize>,
     alive: Vec<bool>,
     stamps: Vec<u32>,
+    /// How each pose would collapse the edge, for the last stamp.
+    merges: Vec<Vec<Merge>>,
     ring_sizes: Vec<usize>,
     /// Twice the signed area of each ring of each pose (#poses x #rings).
     areas: Vec<Vec<f64>>,
@@ -155,6 +157,7 @@ impl<'a> Collapser<'a> {
             previous: Vec::with_capacity(total),
             alive: vec![true; total],
             stamps: vec![0; total],
+            merges: vec![Vec::new(); total],
             ring_sizes: rings.iter().map(|ring| ring.tuples.len()).collect(),
             areas: Vec::with_capacity(originals.len()),
             grids: Vec::with_capacity(originals.len()),
@@ -208,10 +211,10 @@ impl<'a> Collapser<'a> {
         loop {
             while let Some(Reverse(queued)) = self.queue.pop() {
                 let b = queued.vertex;
-                if !self.alive[b] || self.stamps[b] != queued.stamp {
+                if !self.alive[b] || self.stamps[b] != queued.stamp || self.is_least(b) {
                     continue;
                 }
-                let Some((_, merges)) = self.candidate(b) else { continue };
+                let merges = std::mem::take(&mut self.merges[b]);
                 if self.stays_simple(b, &merges) {
                     self.collapse(b, &merges);
                     progress = true;
@@ -252,9 +255,15 @@ impl<'a> Collapser<'a> {
         self.tuples[vertex].landmark.is_some()
     }
 
+    /// Whether the vertex is on a ring that may lose none any more.
+    fn is_least(&self, vertex: usize) -> bool {
+        self.ring_sizes[self.ring_of[vertex]] <= 3
+    }
+
     fn enqueue(&mut self, b: usize) {
         self.stamps[b] += 1;
-        if let Some((cost, _)) = self.candidate(b) {
+        if let Some((cost, merges)) = self.candidate(b) {
+            self.merges[b] = merges;
             self.queue.push(Reverse(Queued {
                 cost,
                 vertex: b,
@@ -270,7 +279,7 @@ impl<'a> Collapser<'a> {
     /// between equals.
     fn candidate(&self, b: usize) -> Option<(f64, Vec<Merge>)> {
         let c = self.next[b];
-        if self.ring_sizes[self.ring_of[b]] <= 3 || (self.is_landmark(b) && self.is_landmark(c)) {
+        if self.is_least(b) || (self.is_landmark(b) && self.is_landmark(c)) {
             return None;
         }
         let mut merges = Vec::with_capacity(self.originals.len());

@@ -43,6 +43,7 @@ use crate::matching::Correspondence;
 use crate::math::{Point, point};
 use crate::outline::{Outline, OutlineError, Ring, RingError};
 use alone::PoseAlone;
+pub use alone::SimplifiedAlone;
 use collapse::{Collapser, PoseOriginal};
 use tuples::TupleRing;
 
@@ -67,6 +68,15 @@ impl SimplifyOptions {
     pub fn with_tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
         self
+    }
+
+    fn check(&self) -> Result<(), SimplifyError> {
+        // Written so that NaN fails too.
+        if self.tolerance > 0.0 && self.tolerance.is_finite() {
+            Ok(())
+        } else {
+            Err(SimplifyError::BadTolerance(self.tolerance))
+        }
     }
 }
 
@@ -128,10 +138,6 @@ pub enum SimplifyError {
         source: OutlineError,
     },
 }
-
-/// How much finer than the tolerance each outline alone is simplified first: fine enough that the joint step, not
-/// this one, decides the shape.
-const PRELIMINARY_SHARE: f64 = 0.05;
 
 /// Vertices of different poses share a tuple if they correspond to within this fraction of the perimeter, which is
 /// well below any tolerance in use.
@@ -239,58 +245,37 @@ impl Simplification {
         landmarks: &[Vec<f64>],
         options: &SimplifyOptions,
     ) -> Result<Self, SimplifyError> {
-        Self::made(outlines, correspondences, landmarks, options, &[])
+        Self::with(
+            outlines,
+            correspondences,
+            landmarks,
+            options,
+            &SimplifiedAlone::default(),
+        )
     }
 
-    /// The same for outlines of which some may be as they were, with the same landmarks: those are not simplified alone again.
-    /// The result is that of [`Self::new`].
+    /// The same, with what has been simplified alone before; `alone` may be of other outlines, landmarks or tolerances, and is
+    /// taken where it is not. The result is that of [`Self::new`].
     ///
     /// # Errors
     /// As [`simplify`].
-    pub fn again(
-        &self,
+    pub fn with(
         outlines: &[Outline],
         correspondences: &[Correspondence],
         landmarks: &[Vec<f64>],
         options: &SimplifyOptions,
+        alone: &SimplifiedAlone,
     ) -> Result<Self, SimplifyError> {
-        let before = if options.tolerance == self.tolerance {
-            &self.poses[..]
-        } else {
-            &[]
-        };
-        Self::made(outlines, correspondences, landmarks, options, before)
-    }
-
-    fn made(
-        outlines: &[Outline],
-        correspondences: &[Correspondence],
-        landmarks: &[Vec<f64>],
-        options: &SimplifyOptions,
-        before: &[Arc<PoseAlone>],
-    ) -> Result<Self, SimplifyError> {
-        // Written so that NaN fails too.
-        if !(options.tolerance > 0.0 && options.tolerance.is_finite()) {
-            return Err(SimplifyError::BadTolerance(options.tolerance));
-        }
+        options.check()?;
         for (pose, outline) in outlines.iter().enumerate() {
             if outline.rings().len() != correspondences.len() {
                 let (found, expected) = (outline.rings().len(), correspondences.len());
                 return Err(SimplifyError::RingCount { pose, found, expected });
             }
         }
-        let tolerance = PRELIMINARY_SHARE * options.tolerance;
-        let poses: Vec<Arc<PoseAlone>> = outlines
-            .par_iter()
-            .enumerate()
-            .map(|(pose, outline)| {
-                let pins = alone::pins(landmarks, pose);
-                let kept = before
-                    .get(pose)
-                    .filter(|kept| kept.pins == pins && kept.outline == *outline);
-                kept.map_or_else(|| Arc::new(PoseAlone::new(outline, pins, tolerance)), Arc::clone)
-            })
-            .collect();
+        let pins = (0..outlines.len()).map(|pose| Some(alone::pins(landmarks, pose)));
+        let alone = alone.for_pins(outlines, &pins.collect::<Vec<_>>(), options.tolerance);
+        let poses: Vec<Arc<PoseAlone>> = alone.poses.into_iter().flatten().collect();
         let joined: Vec<TupleRing> = correspondences
             .iter()
             .enumerate()
@@ -311,6 +296,15 @@ impl Simplification {
             varied: order,
             variations: 0,
         })
+    }
+
+    /// Its outlines, simplified alone.
+    #[must_use]
+    pub fn alone(&self) -> SimplifiedAlone {
+        SimplifiedAlone {
+            poses: self.poses.iter().cloned().map(Some).collect(),
+            tolerance: self.tolerance,
+        }
     }
 
     /// The polygons by the order that is kept: at first, the cheapest collapse first.
