@@ -57,10 +57,10 @@ async function askWeights(place) {
   return { place, weights, textureWeights, shape: 0, revision: store.state.revisions.weights, inverted: 0, order: [], layers: [] };
 }
 
-/** Wants the frame of where the probe is now. */
+/** Wants the frame of where the probe is now. What is wanted for several reasons at once is asked for once. */
 export function wantFrame() {
   wanted = true;
-  ask();
+  queueMicrotask(ask);
 }
 
 /** Resolves when what is shown is where the probe is. */
@@ -69,8 +69,19 @@ export function settled() {
   return new Promise((done) => waiting.push(done));
 }
 
-on('place weights shape', wantFrame);
-on('view', (changes) => 'compare' in changes && wantFrame());
+// Where matches are shown, nobody sees the picture: the match of a new shape comes first.
+let isPutOff = false;
+on('place', wantFrame);
+on('weights shape', () => {
+  isPutOff = store.view.main === 'matches' && store.puppet !== null;
+  if (!isPutOff) wantFrame();
+});
+on('matched', (shape) => {
+  if (!isPutOff || shape !== store.puppet.shape) return;
+  isPutOff = false;
+  wantFrame();
+});
+on('view', (changes) => ('compare' in changes || (isPutOff && store.view.main === 'picture')) && wantFrame());
 // Outlines for a smaller picture are too coarse for a larger one.
 on('drawn', () => store.pixel < asked && wantFrame());
 

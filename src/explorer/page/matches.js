@@ -13,9 +13,12 @@ byId('stage').append(root);
 let cells = [];
 
 let reads = 0;
+/** The reads whose answers are not here yet. */
+let reading = 0;
 async function read() {
   if (!store.scene?.poses.length) return;
   const mine = ++reads;
+  reading++;
   try {
     const layer = store.layer;
     const answer = await getJson('correspondences', { layer, samples: 0 });
@@ -24,6 +27,8 @@ async function read() {
   } catch (error) {
     emit('refused', error.problem ?? { message: error.message });
     return;
+  } finally {
+    reading--;
   }
   build();
   draw();
@@ -155,13 +160,10 @@ on('changing', ({ meshes }) => {
   isAhead = meshes && store.view.main === 'matches';
   if (isAhead) read();
 });
-on('shape', () => {
-  if (isAhead) draw();
-  else read();
-});
+on('shape', () => isAhead || read());
 on('match-stale layer', read);
-on('scene', () => {
-  if (!match.data) read();
-});
-on('scene state marks held', draw);
+on('scene', () => match.data || read());
+// What is about to be drawn with the answer is not drawn before it.
+on('scene state', () => reading > 0 || draw());
+on('marks held', draw);
 new ResizeObserver(arrange).observe(root);
