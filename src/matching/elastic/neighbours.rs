@@ -6,7 +6,8 @@
 
 use std::ops::RangeInclusive;
 
-use super::{ColumnLengths, LARGEST_SLOPE, MismatchTable, STEPS, TURNS, cheapest_path, step_price};
+use super::table::{ColumnLengths, TURNS};
+use super::{LARGEST_SLOPE, MismatchTable, STEPS, cheapest_path, step_price};
 
 /// Starts in one sweep: three vectors of four.
 pub(in super::super) const LANES: usize = 12;

@@ -1,8 +1,9 @@
 use std::f64::consts::TAU;
 
 use super::*;
+use crate::matching::curve::{Curve, Samples};
 use crate::matching::start::cheapest_paths;
-use crate::math::rotation;
+use crate::math::{Point, rotation};
 use crate::outline::Ring;
 
 fn wavy(amplitude: f64, turn: f64) -> Curve {
