@@ -91,7 +91,7 @@ pub(super) struct PoseOriginal {
 }
 
 /// A way to merge `b` and `c` in one pose.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Merge {
     point: Point,
     parameter: f64,
@@ -103,6 +103,8 @@ struct Queued {
     cost: f64,
     vertex: usize,
     stamp: u32,
+    /// How each pose would do it.
+    merges: Vec<Merge>,
 }
 
 impl Eq for Queued {}
@@ -134,8 +136,6 @@ pub(super) struct Collapser<'a> {
     previous: Vec<usize>,
     alive: Vec<bool>,
     stamps: Vec<u32>,
-    /// How each pose would collapse the edge, for the last stamp.
-    merges: Vec<Vec<Merge>>,
     ring_sizes: Vec<usize>,
     /// Twice the signed area of each ring of each pose (#poses x #rings).
     areas: Vec<Vec<f64>>,
@@ -157,7 +157,6 @@ impl<'a> Collapser<'a> {
             previous: Vec::with_capacity(total),
             alive: vec![true; total],
             stamps: vec![0; total],
-            merges: vec![Vec::new(); total],
             ring_sizes: rings.iter().map(|ring| ring.tuples.len()).collect(),
             areas: Vec::with_capacity(originals.len()),
             grids: Vec::with_capacity(originals.len()),
@@ -211,12 +210,11 @@ impl<'a> Collapser<'a> {
         loop {
             while let Some(Reverse(queued)) = self.queue.pop() {
                 let b = queued.vertex;
-                if !self.alive[b] || self.stamps[b] != queued.stamp || self.is_least(b) {
+                if !self.alive[b] || self.stamps[b] != queued.stamp || self.is_on_triangle(b) {
                     continue;
                 }
-                let merges = std::mem::take(&mut self.merges[b]);
-                if self.stays_simple(b, &merges) {
-                    self.collapse(b, &merges);
+                if self.stays_simple(b, &queued.merges) {
+                    self.collapse(b, &queued.merges);
                     progress = true;
                 } else {
                     blocked.push(b);
@@ -255,19 +253,19 @@ impl<'a> Collapser<'a> {
         self.tuples[vertex].landmark.is_some()
     }
 
-    /// Whether the vertex is on a ring that may lose none any more.
-    fn is_least(&self, vertex: usize) -> bool {
+    /// Whether the vertex is on a ring of three, which may lose none.
+    fn is_on_triangle(&self, vertex: usize) -> bool {
         self.ring_sizes[self.ring_of[vertex]] <= 3
     }
 
     fn enqueue(&mut self, b: usize) {
         self.stamps[b] += 1;
         if let Some((cost, merges)) = self.candidate(b) {
-            self.merges[b] = merges;
             self.queue.push(Reverse(Queued {
                 cost,
                 vertex: b,
                 stamp: self.stamps[b],
+                merges,
             }));
         }
     }
@@ -279,7 +277,7 @@ impl<'a> Collapser<'a> {
     /// between equals.
     fn candidate(&self, b: usize) -> Option<(f64, Vec<Merge>)> {
         let c = self.next[b];
-        if self.is_least(b) || (self.is_landmark(b) && self.is_landmark(c)) {
+        if self.is_on_triangle(b) || (self.is_landmark(b) && self.is_landmark(c)) {
             return None;
         }
         let mut merges = Vec::with_capacity(self.originals.len());
