@@ -41,13 +41,7 @@ impl SimplifiedAlone {
     ) -> Result<Self, SimplifyError> {
         options.check()?;
         let known = |pose: usize| -> Option<Vec<Pin>> {
-            let numbered = landmarks.iter().enumerate();
-            numbered
-                .map(|(landmark, row)| {
-                    let parameter = (*row.get(pose)?)?;
-                    Some(Pin { landmark, parameter })
-                })
-                .collect()
+            pins(landmarks.iter().map(|row| row.get(pose).copied().flatten())).collect()
         };
         let pins: Vec<Option<Vec<Pin>>> = (0..outlines.len()).map(known).collect();
         Ok(before.for_pins(outlines, &pins, options.tolerance))
@@ -88,15 +82,12 @@ fn mean_half_width(outline: &Outline) -> f64 {
     outline.area() / outline.rings().iter().map(Ring::perimeter).sum::<f64>()
 }
 
-/// The landmarks of one pose: `landmarks` are #landmarks x #poses.
-pub(super) fn pins(landmarks: &[Vec<f64>], pose: usize) -> Vec<Pin> {
-    let numbered = landmarks.iter().enumerate();
-    numbered
-        .filter_map(|(landmark, row)| {
-            let &parameter = row.get(pose)?;
-            Some(Pin { landmark, parameter })
-        })
-        .collect()
+/// The landmarks of one pose, of which `places` has a parameter each, if it is known.
+pub(super) fn pins(places: impl Iterator<Item = Option<f64>>) -> impl Iterator<Item = Option<Pin>> {
+    places.enumerate().map(|(landmark, place)| {
+        let parameter = place?;
+        Some(Pin { landmark, parameter })
+    })
 }
 
 impl PoseAlone {

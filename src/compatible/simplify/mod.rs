@@ -45,7 +45,7 @@ use crate::outline::{Outline, OutlineError, Ring, RingError};
 use alone::PoseAlone;
 pub use alone::SimplifiedAlone;
 use collapse::{Collapser, PoseOriginal};
-use tuples::TupleRing;
+use tuples::{Pin, TupleRing};
 
 /// What the simplification may do.
 #[derive(Debug, Clone, PartialEq)]
@@ -273,8 +273,9 @@ impl Simplification {
                 return Err(SimplifyError::RingCount { pose, found, expected });
             }
         }
-        let pins = (0..outlines.len()).map(|pose| Some(alone::pins(landmarks, pose)));
-        let alone = alone.for_pins(outlines, &pins.collect::<Vec<_>>(), options.tolerance);
+        let given = |pose: usize| alone::pins(landmarks.iter().map(move |row| row.get(pose).copied())).flatten();
+        let pins: Vec<Option<Vec<Pin>>> = (0..outlines.len()).map(|pose| Some(given(pose).collect())).collect();
+        let alone = alone.for_pins(outlines, &pins, options.tolerance);
         let poses: Vec<Arc<PoseAlone>> = alone.poses.into_iter().flatten().collect();
         let joined: Vec<TupleRing> = correspondences
             .iter()
