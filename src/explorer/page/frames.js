@@ -71,17 +71,20 @@ export function settled() {
 
 // Where matches are shown, nobody sees the picture: the match of a new shape comes first.
 let isPutOff = false;
-on('place', wantFrame);
-on('weights shape', () => {
-  isPutOff = store.view.main === 'matches' && store.puppet !== null;
-  if (!isPutOff) wantFrame();
-});
-on('matched', (shape) => {
-  if (!isPutOff || shape !== store.puppet.shape) return;
+function wantPutOff() {
+  if (!isPutOff) return;
   isPutOff = false;
   wantFrame();
+}
+on('place', wantFrame);
+on('shape', () => (isPutOff = store.view.main === 'matches'));
+on('weights', () => isPutOff || wantFrame());
+on('matched', (shape) => shape === store.puppet?.shape && wantPutOff());
+on('refused', wantPutOff);
+on('view', (changes) => {
+  if ('compare' in changes) wantFrame();
+  if (store.view.main === 'picture') wantPutOff();
 });
-on('view', (changes) => ('compare' in changes || (isPutOff && store.view.main === 'picture')) && wantFrame());
 // Outlines for a smaller picture are too coarse for a larger one.
 on('drawn', () => store.pixel < asked && wantFrame());
 

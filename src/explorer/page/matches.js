@@ -26,6 +26,7 @@ async function read() {
     takeMatch(answer);
   } catch (error) {
     emit('refused', error.problem ?? { message: error.message });
+    draw();
     return;
   } finally {
     reading--;
