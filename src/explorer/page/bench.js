@@ -56,7 +56,16 @@ async function moveLandmarks() {
 
 const displayed = () => new Promise((done) => requestAnimationFrame(done));
 
+/** Until something has been drawn: a page may open before its scene is mapped. */
+async function drawnOnce() {
+  if (store.pixel > 0) return;
+  await new Promise((done) => {
+    const stop = on('drawn', () => (stop(), done()));
+  });
+}
+
 export async function measure() {
+  await drawnOnce();
   const table = h('table', {});
   const dialog = h('dialog', { class: 'dialog bench', 'aria-label': 'Measurements' }, h('header', {}, h('h2', {}, 'Measurements')), table);
   document.body.append(dialog);

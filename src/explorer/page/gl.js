@@ -25,31 +25,6 @@ export function program(gl, vertex, fragment) {
   return { made, at };
 }
 
-/** Points in rows of this many texels. */
-export const POINTS_ROW = 1024;
-
-/** A texture that holds lists of points, one below the other, for `texelFetch`. */
-export class PointTexture {
-  constructor(gl, count, lists = 1) {
-    this.gl = gl;
-    this.rows = Math.max(1, Math.ceil(count / POINTS_ROW));
-    this.padded = new Float32Array(2 * POINTS_ROW * this.rows);
-    this.texture = texture(gl, gl.RG32F, POINTS_ROW, this.rows * lists);
-  }
-
-  fill(points, list = 0) {
-    const { gl } = this;
-    this.padded.set(points);
-    gl.bindTexture(gl.TEXTURE_2D, this.texture);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, list * this.rows, POINTS_ROW, this.rows, gl.RG, gl.FLOAT, this.padded);
-    return this;
-  }
-
-  free() {
-    this.gl.deleteTexture(this.texture);
-  }
-}
-
 /** A texture without levels and with nothing in it. */
 export function texture(gl, format, width, height) {
   const made = gl.createTexture();

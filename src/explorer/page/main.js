@@ -14,7 +14,7 @@ import './keyboard.js';
 import './bars.js';
 import { byId, h } from './dom.js';
 import { settled } from './frames.js';
-import { look, on, start, store } from './state.js';
+import { look, on, start } from './state.js';
 
 on('tab', (name) => {
   byId('app').dataset.inspector = 'open';
@@ -27,7 +27,7 @@ try {
   byId('app').setAttribute('aria-busy', 'false');
   await settled();
   document.documentElement.dataset.ready = 'true';
-  if (new URLSearchParams(location.search).has('bench') && store.state.revisions.shape > 0) (await import('./bench.js')).measure();
+  if (new URLSearchParams(location.search).has('bench')) (await import('./bench.js')).measure();
 } catch (error) {
   byId('stage').replaceChildren(h('p', { class: 'note' }, `The page cannot be opened: ${error.message}`));
   throw error;

@@ -52,6 +52,7 @@ const MODULES: &[PageFile] = modules![
     "puppet.js",
     "recorder.js",
     "shaders.js",
+    "skirted.js",
     "state.js",
     "theme.js",
     "thumbnail.js",

@@ -3,7 +3,8 @@ import { byId, h, onceAFrame, short } from './dom.js';
 import { curves, placeCurves } from './curves.js';
 import { emit, on, store } from './state.js';
 import { framesOf } from './frames.js';
-import { extent, PuppetPainter } from './puppet.js';
+import { PuppetPainter } from './puppet.js';
+import { extent } from './skirted.js';
 import { drawingView, frameSize, frameView, panBy, zoomBy } from './view.js';
 import { attachHandles, drawHandles, pictureDrag } from './handles.js';
 

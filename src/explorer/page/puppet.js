@@ -2,17 +2,17 @@
 // that the blended outline covers of each pixel. Where triangles overlap, the last one is seen: they are drawn from the last to the
 // first, each pixel once (by the depth buffer).
 import { coveredAreas } from './areas.js';
-import { context, PointTexture, pictureTexture, program, texture } from './gl.js';
+import { context, pictureTexture, program, texture } from './gl.js';
 import { MESH, textured } from './shaders.js';
+import { attribute, SkirtedMesh } from './skirted.js';
 
 /** A texture that counts for less is not drawn. */
 const FAINTEST = 1e-3;
-/** Textures that are drawn at once; of more, the heaviest. WebGL2 has 16 for sure, and two hold places and areas. */
-const MOST_TEXTURES = 13;
+/** Textures that are drawn at once; of more, the heaviest. WebGL2 has 15 varyings for sure, and 16 attributes and pictures, of which
+ * one holds places and one areas. */
+const MOST_TEXTURES = 15;
 /** Texels that a pixel may span before a smaller picture is used, as in `render::texture`. */
 const MOST_TEXELS_A_PIXEL = 2.28;
-/** How far colours reach beyond the mesh, of the drawing's size: the outline is finer than the mesh's boundary. */
-const SKIRT = 0.04;
 
 export class PuppetPainter {
   constructor(canvas) {
@@ -24,15 +24,16 @@ export class PuppetPainter {
   }
 
   build() {
-    this.programs = [];
+    this.programs = {};
     this.mesh = program(this.gl, ...MESH);
+    this.corners = { array: this.gl.createVertexArray(), buffer: this.gl.createBuffer() };
     this.areas = null;
   }
 
   /** Takes `api/puppet`, the meshes and, per layer and texture, a bitmap; without bitmaps the pictures that are there stay. */
   load(puppet, meshes, bitmaps) {
     if (!this.gl) return;
-    this.layers.forEach((layer) => this.free(layer));
+    this.layers.forEach((layer) => layer.mesh.free());
     if (bitmaps) {
       this.pictures.flat().forEach((picture) => this.gl.deleteTexture(picture));
       this.pictures = bitmaps.map((layer) => layer.map((bitmap) => pictureTexture(this.gl, bitmap)));
@@ -41,59 +42,17 @@ export class PuppetPainter {
   }
 
   layer(puppet, mesh, pictures) {
-    const { gl } = this;
-    const drawn = new PointTexture(gl, mesh.vertices, puppet.textures.length);
-    const textures = puppet.textures.map((of, k) => {
-      const { width, height, origin, scale } = of.colour;
-      drawn.fill(mesh.poses[of.pose], k);
-      return {
-        picture: pictures[k],
-        row: k * drawn.rows,
-        area: areaOf(mesh.triangles, mesh.poses[of.pose]) * scale * scale,
-        texels: [scale / width, scale / height, (-origin[0] * scale) / width, (-origin[1] * scale) / height],
-      };
-    });
-    const corners = new Uint32Array(4 * mesh.triangles.length);
-    // The last triangle first, its corners in their order.
-    for (let k = 0, to = 0; k < mesh.triangles.length; k++, to += 4) {
-      const vertex = mesh.triangles[mesh.triangles.length - 3 - 3 * Math.floor(k / 3) + (k % 3)];
-      corners.fill(vertex, to, to + 3);
-    }
-    const [low, high] = extent(mesh.poses[0]);
+    const coordinates = puppet.textures.map(({ pose, colour: { width, height, origin, scale } }) =>
+      mesh.poses[pose].map((value, k) => ((value - origin[k & 1]) * scale) / (k & 1 ? height : width)));
     return {
-      textures,
-      drawn,
+      textures: puppet.textures.map(({ pose, colour: { scale } }, number) => ({
+        number,
+        picture: pictures[number],
+        texels: areaOf(mesh.triangles, mesh.poses[pose]) * scale * scale,
+      })),
       triangles: mesh.triangles,
-      places: new PointTexture(gl, mesh.vertices),
-      count: mesh.triangles.length,
-      inside: this.corners(corners),
-      skirt: this.corners(skirt(mesh)),
-      skirtCount: mesh.rings.reduce((sum, ring) => sum + 6 * ring.length, 0),
-      reach: SKIRT * Math.hypot(high[0] - low[0], high[1] - low[1]),
+      mesh: new SkirtedMesh(this.gl, mesh, coordinates),
     };
-  }
-
-  corners(values) {
-    const { gl } = this;
-    const array = gl.createVertexArray();
-    const buffer = gl.createBuffer();
-    gl.bindVertexArray(array);
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
-    gl.enableVertexAttribArray(0);
-    gl.vertexAttribIPointer(0, 4, gl.UNSIGNED_INT, 0, 0);
-    gl.bindVertexArray(null);
-    return { array, buffer };
-  }
-
-  free(layer) {
-    const { gl } = this;
-    layer.drawn.free();
-    layer.places.free();
-    for (const { array, buffer } of [layer.inside, layer.skirt]) {
-      gl.deleteVertexArray(array);
-      gl.deleteBuffer(buffer);
-    }
   }
 
   /** Clears the canvas. `view`: {scale, x, y}, from drawing units to pixels of the canvas. */
@@ -154,44 +113,30 @@ export class PuppetPainter {
       .slice(0, MOST_TEXTURES);
     if (shown.length === 0) return;
     const whole = shown.reduce((sum, { weight }) => sum + weight, 0);
-    const { made, at } = (this.programs[shown.length] ??= program(gl, ...textured(shown.length)));
+    const { made, at } = (this.programs[[shown.length, inLight]] ??= program(gl, ...textured(shown.length, inLight)));
     gl.useProgram(made);
-    gl.activeTexture(gl.TEXTURE0);
-    layer.places.fill(shape.positions);
-    bound(gl, 0, layer.places.texture);
-    bound(gl, 1, this.areas.texture);
-    bound(gl, 2, layer.drawn.texture);
-    gl.uniform1i(at.places, 0);
-    gl.uniform1i(at.areas, 1);
-    gl.uniform1i(at.drawn, 2);
+    bound(gl, 0, this.areas.texture);
+    gl.uniform1i(at.areas, 0);
     gl.uniform2f(at.size, canvas.width, canvas.height);
     gl.uniform3fv(at.view, this.view);
-    gl.uniform1f(at.skirt, layer.reach);
     gl.uniform1f(at.height, canvas.height);
     gl.uniform1f(at.opacity, opacity);
     gl.uniform4fv(at.tint, tint);
-    gl.uniform1i(at.in_light, inLight);
-    gl.uniform1iv(at['rows[0]'], shown.map(({ row }) => row));
-    gl.uniform4fv(at['texels[0]'], shown.flatMap(({ texels }) => texels));
     gl.uniform1fv(at['weights[0]'], shown.map(({ weight }) => weight / whole));
     // One level for all of a texture, as the command does it.
     const seen = Math.max(areaOf(layer.triangles, shape.positions) * this.view[0] ** 2, 1e-6);
-    const level = (area) => Math.max(0, Math.ceil(Math.log2(Math.sqrt(area / seen) / MOST_TEXELS_A_PIXEL)));
-    gl.uniform1fv(at['levels[0]'], shown.map(({ area }) => level(area)));
+    const level = (texels) => Math.max(0, Math.ceil(Math.log2(Math.sqrt(texels / seen) / MOST_TEXELS_A_PIXEL)));
+    gl.uniform1fv(at['levels[0]'], shown.map(({ texels }) => level(texels)));
     shown.forEach(({ picture }, k) => {
-      bound(gl, 3 + k, picture);
-      gl.uniform1i(at[`picture${k}`], 3 + k);
+      bound(gl, 1 + k, picture);
+      gl.uniform1i(at[`picture${k}`], 1 + k);
     });
+    layer.mesh.bind(shape.positions, shown.map(({ number }) => number));
+    // What is drawn first stays: the skirt is only where nothing is yet.
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LESS);
     gl.clear(gl.DEPTH_BUFFER_BIT);
-    gl.enable(gl.CULL_FACE);
-    gl.bindVertexArray(layer.inside.array);
-    gl.drawArrays(gl.TRIANGLES, 0, layer.count);
-    // The skirt: only where nothing is yet.
-    gl.disable(gl.CULL_FACE);
-    gl.bindVertexArray(layer.skirt.array);
-    gl.drawArrays(gl.TRIANGLES, 0, layer.skirtCount);
+    layer.mesh.draw();
     gl.disable(gl.DEPTH_TEST);
     gl.disable(gl.SCISSOR_TEST);
   }
@@ -203,7 +148,7 @@ export class PuppetPainter {
       gl.deleteTexture(this.areas?.texture ?? null);
       this.areas = { width: canvas.width, height: canvas.height, texture: texture(gl, gl.R8, canvas.width, canvas.height) };
     }
-    bound(gl, 1, this.areas.texture);
+    bound(gl, 0, this.areas.texture);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
     gl.texSubImage2D(gl.TEXTURE_2D, 0, window[0], window[1], window[2] - window[0], window[3] - window[1], gl.RED, gl.UNSIGNED_BYTE, coveredAreas(rings, this.view, window));
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
@@ -216,18 +161,26 @@ export class PuppetPainter {
     gl.useProgram(made);
     gl.uniform2f(at.size, canvas.width, canvas.height);
     gl.uniform3fv(at.view, this.view);
-    gl.uniform1i(at.places, 0);
     gl.uniform4fv(at.line, line);
     gl.uniform4fv(at.wrong, wrong);
     gl.uniform1f(at.thickness, thickness);
+    gl.bindVertexArray(this.corners.array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.corners.buffer);
     for (const k of frame.order) {
-      const layer = this.layers[k];
-      if (!layer) continue;
-      gl.activeTexture(gl.TEXTURE0);
-      layer.places.fill(frame.layers[k].positions);
-      bound(gl, 0, layer.places.texture);
-      gl.bindVertexArray(layer.inside.array);
-      gl.drawArrays(gl.TRIANGLES, 0, layer.count);
+      if (!this.layers[k]) continue;
+      const { triangles } = this.layers[k];
+      const { positions } = frame.layers[k];
+      // Each triangle has its own corners, so that they can be told apart; the last one comes first.
+      const corners = new Float32Array(2 * triangles.length);
+      for (let t = triangles.length - 3, to = 0; t >= 0; t -= 3) {
+        for (const vertex of [triangles[t], triangles[t + 1], triangles[t + 2]]) {
+          corners[to++] = positions[2 * vertex];
+          corners[to++] = positions[2 * vertex + 1];
+        }
+      }
+      gl.bufferData(gl.ARRAY_BUFFER, corners, gl.STREAM_DRAW);
+      attribute(gl, 0, 0);
+      gl.drawArrays(gl.TRIANGLES, 0, triangles.length);
     }
   }
 }
@@ -235,23 +188,6 @@ export class PuppetPainter {
 function bound(gl, unit, what) {
   gl.activeTexture(gl.TEXTURE0 + unit);
   gl.bindTexture(gl.TEXTURE_2D, what);
-}
-
-/** Two triangles an edge of the boundary, from it outward. */
-function skirt(mesh) {
-  const corners = [];
-  mesh.rings.forEach((ring, r) => {
-    const count = ring.length;
-    const at = (k) => ring[(k + count) % count];
-    // Outward is to one side of an outer ring that runs clockwise on the screen, and to the other otherwise; of holes alike.
-    const clockwise = ringArea(ring, mesh.poses[0]) > 0;
-    const forward = clockwise === (r === 0);
-    for (let k = 0; k < count; k++) {
-      const corner = (i, side) => (forward ? [at(i), at(i - 1), at(i + 1), side] : [at(i), at(i + 1), at(i - 1), side]);
-      corners.push(...corner(k, 0), ...corner(k + 1, 0), ...corner(k + 1, 1), ...corner(k, 0), ...corner(k + 1, 1), ...corner(k, 1));
-    }
-  });
-  return new Uint32Array(corners);
 }
 
 /** The area of the triangles that are not inverted. */
@@ -262,23 +198,4 @@ function areaOf(triangles, points) {
     doubled += Math.max(0, (points[b] - points[a]) * (points[c + 1] - points[a + 1]) - (points[b + 1] - points[a + 1]) * (points[c] - points[a]));
   }
   return 0.5 * doubled;
-}
-
-function ringArea(ring, points) {
-  let area = 0;
-  for (let k = 0; k < ring.length; k++) {
-    const [i, j] = [ring[k], ring[(k + 1) % ring.length]];
-    area += points[2 * i] * points[2 * j + 1] - points[2 * j] * points[2 * i + 1];
-  }
-  return area;
-}
-
-/** The corners of the box around points x, y, x, y. */
-export function extent(points) {
-  const [low, high] = [[Infinity, Infinity], [-Infinity, -Infinity]];
-  for (let k = 0; k < points.length; k++) {
-    low[k & 1] = Math.min(low[k & 1], points[k]);
-    high[k & 1] = Math.max(high[k & 1], points[k]);
-  }
-  return [low, high];
 }
