@@ -7,7 +7,8 @@
 //!
 //! The rest shape is the mean of the poses: the mean of their metrics (Gram matrices of two edges), each divided by the
 //! pose's area. It is updated in every sweep. A vertex takes one Newton step of its own 2 x 2 problem with the other
-//! vertices held, shortened until the energy falls and all triangles are positive.
+//! vertices held, shortened until the energy falls and all triangles are positive. A vertex around which nothing moves any
+//! more is passed over: most come to rest in a few sweeps, a few take many.
 
 use rayon::prelude::*;
 
@@ -21,6 +22,10 @@ use crate::mesh::geometry;
 /// more stretch between poses; at 0 triangles collapse.
 const SHAPE_WEIGHT: f64 = 2.4;
 
+/// A vertex is passed over while it and its neighbours move by no more than this in any pose, as a fraction of the root of
+/// the mean triangle's area.
+const STILL: f64 = 0.01;
+
 /// Halvings of a step before it is given up.
 const HALVINGS: usize = 6;
 
@@ -33,27 +38,53 @@ struct Rest {
     shape_weight: f64,
 }
 
-/// Minimises the distortion of all poses, `sweeps` times over all vertices.
+/// Minimises the distortion of all poses, with at most `sweeps` sweeps: over all vertices, then over those around which
+/// something has moved.
 pub(super) fn minimise(mesh: &mut EditableMesh, stars: &Stars, sweeps: usize) {
+    let areas: Vec<f64> = mesh
+        .positions
+        .iter()
+        .map(|positions| total_area(mesh, positions))
+        .collect();
+    // The rest shapes have an area of about 1 together.
+    let mean_area = 1.0 / mesh.triangles().count().max(1) as f64;
+    let mut is_moved = vec![true; mesh.vertex_count()];
     for _ in 0..sweeps {
-        let areas: Vec<f64> = mesh
+        let (mut awake, mut rests) = (Vec::new(), Vec::new());
+        for (vertex, opposite) in stars.iter() {
+            if is_moved[vertex] || opposite.iter().any(|&(a, _)| is_moved[a]) {
+                let start = rests.len();
+                let rest = |&(a, b): &(usize, usize)| rest_shape(&mesh.positions, &areas, mean_area, [vertex, a, b]);
+                rests.extend(opposite.iter().map(rest));
+                awake.push((vertex, opposite, start..rests.len()));
+            }
+        }
+        if awake.is_empty() {
+            break;
+        }
+        let moved: Vec<Vec<usize>> = mesh
             .positions
-            .iter()
-            .map(|positions| total_area(mesh, positions))
-            .collect();
-        let rests = rest_shapes(mesh, stars, &areas);
-        mesh.positions
             .par_iter_mut()
             .zip(&areas)
-            .for_each(|(positions, &area)| {
+            .map(|(positions, &area)| {
                 let scale = area.sqrt();
-                for ((vertex, opposite), range) in stars.iter().zip(stars.starts().windows(2)) {
-                    let rests = &rests[range[0]..range[1]];
-                    if let Some(place) = improved(positions, vertex, opposite, rests, scale) {
-                        positions[vertex] = place;
+                let still = STILL * (area * mean_area).sqrt();
+                let mut moved = Vec::new();
+                for (vertex, opposite, range) in &awake {
+                    if let Some(place) = improved(positions, *vertex, opposite, &rests[range.clone()], scale) {
+                        if (place - positions[*vertex]).norm() > still {
+                            moved.push(*vertex);
+                        }
+                        positions[*vertex] = place;
                     }
                 }
-            });
+                moved
+            })
+            .collect();
+        is_moved.fill(false);
+        for vertex in moved.into_iter().flatten() {
+            is_moved[vertex] = true;
+        }
     }
 }
 
@@ -63,36 +94,27 @@ fn total_area(mesh: &EditableMesh, positions: &[Point]) -> f64 {
         .sum()
 }
 
-/// The rest triangle of every entry of the stars, at total area 1.
-fn rest_shapes(mesh: &EditableMesh, stars: &Stars, areas: &[f64]) -> Vec<Rest> {
-    // The rest shapes have an area of about 1 together.
-    let mean_area = 1.0 / mesh.triangles().count().max(1) as f64;
-    let mut rests = Vec::new();
-    for (vertex, opposite) in stars.iter() {
-        for &(a, b) in opposite {
-            let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
-            for (positions, area) in mesh.positions.iter().zip(areas) {
-                let (u, v) = (positions[a] - positions[vertex], positions[b] - positions[vertex]);
-                aa += u.norm_squared() / area;
-                ab += u.dot(&v) / area;
-                bb += v.norm_squared() / area;
-            }
-            let count = areas.len() as f64;
-            let (aa, ab, bb) = (aa / count, ab / count, bb / count);
-            // Edges with these lengths and this angle: u along x. A mean of metrics is a metric.
-            let base = aa.sqrt();
-            let along = ab / base;
-            let height = (bb - along * along).max(f64::MIN_POSITIVE).sqrt();
-            let double_area = base * height;
-            let inverse = Matrix::new(height, -along, 0.0, base) / double_area;
-            rests.push(Rest {
-                inverse,
-                area: 0.5 * double_area,
-                shape_weight: SHAPE_WEIGHT * (0.5 * double_area * mean_area).sqrt(),
-            });
-        }
+/// The rest shape of a triangle, at total area 1.
+fn rest_shape(poses: &[Vec<Point>], areas: &[f64], mean_area: f64, [vertex, a, b]: [usize; 3]) -> Rest {
+    let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
+    for (positions, area) in poses.iter().zip(areas) {
+        let (u, v) = (positions[a] - positions[vertex], positions[b] - positions[vertex]);
+        aa += u.norm_squared() / area;
+        ab += u.dot(&v) / area;
+        bb += v.norm_squared() / area;
     }
-    rests
+    let count = areas.len() as f64;
+    let (aa, ab, bb) = (aa / count, ab / count, bb / count);
+    // Edges with these lengths and this angle: u along x. A mean of metrics is a metric.
+    let base = aa.sqrt();
+    let along = ab / base;
+    let height = (bb - along * along).max(f64::MIN_POSITIVE).sqrt();
+    let double_area = base * height;
+    Rest {
+        inverse: Matrix::new(height, -along, 0.0, base) / double_area,
+        area: 0.5 * double_area,
+        shape_weight: SHAPE_WEIGHT * (0.5 * double_area * mean_area).sqrt(),
+    }
 }
 
 /// A better place for the vertex, if its Newton step leads to one.

@@ -15,7 +15,7 @@
 //! distortion makes interiors correspond well and not only validly.
 //!
 //! Guarantee: no step makes a triangle non-positive in any pose; each move is proven by an exact predicate before it is
-//! taken. Cost: linear in vertices times poses for each sweep, a fixed number of sweeps. Limit: angles at the boundary
+//! taken. Cost: linear in vertices times poses for each sweep, a bounded number of sweeps. Limit: angles at the boundary
 //! are bounded by the outlines' own spikes.
 
 mod distortion;

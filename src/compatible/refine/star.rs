@@ -53,11 +53,6 @@ impl Stars {
             .zip(self.starts.windows(2))
             .map(|(&v, range)| (v, &self.opposite[range[0]..range[1]]))
     }
-
-    /// The number of the first of a vertex's triangles, counted through all stars: `iter` yields them in this order.
-    pub(super) fn starts(&self) -> &[usize] {
-        &self.starts
-    }
 }
 
 /// Whether all triangles of a star are positive with its centre at `centre`. Exact.
