@@ -26,4 +26,5 @@ pub use correspondence::{Correspondence, CorrespondenceError};
 pub use error::MatchError;
 pub use feature::SalientPoint;
 pub use landmark::Landmark;
+pub(crate) use n_way::match_rings_beside;
 pub use n_way::{MatchOptions, MatchReport, MirrorHints, PoseMatch, RingMatch, match_rings};

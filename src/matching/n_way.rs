@@ -121,6 +121,16 @@ pub struct PoseMatch {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn match_rings(rings: &[Ring], landmarks: &[Landmark], options: &MatchOptions) -> Result<RingMatch, MatchError> {
+    match_rings_beside(rings, landmarks, options, || ()).map(|(matched, ())| matched)
+}
+
+/// As [`match_rings`], with other work beside the step that takes one pose after the other.
+pub(crate) fn match_rings_beside<T: Send>(
+    rings: &[Ring],
+    landmarks: &[Landmark],
+    options: &MatchOptions,
+    beside: impl FnOnce() -> T + Send,
+) -> Result<(RingMatch, T), MatchError> {
     let count = rings.len();
     if count == 0 {
         return Err(MatchError::NoPose);
@@ -140,7 +150,17 @@ pub fn match_rings(rings: &[Ring], landmarks: &[Landmark], options: &MatchOption
     let given = landmarks.clone();
     carry_to_reference(&forms, reference, &mut landmarks)?;
 
-    let StarMatch { frame, matches, .. } = match_all(&forms, reference, &landmarks)?;
+    let all: Vec<usize> = (0..count).collect();
+    let to_reference = || match_some(&forms, reference, &landmarks, &all);
+    let (star, beside) = if count < 3 {
+        let (star, beside) = rayon::join(to_reference, beside);
+        (star?, beside)
+    } else {
+        let mut star = to_reference()?;
+        let ((), beside) = rayon::join(|| match_jointly(&forms, &mut star), beside);
+        (star, beside)
+    };
+    let StarMatch { frame, matches, .. } = star;
     let rows = (0..frame.rows.len())
         .map(|row| {
             let of_pose = |pose: usize| match &matches[pose] {
@@ -180,11 +200,12 @@ pub fn match_rings(rings: &[Ring], landmarks: &[Landmark], options: &MatchOption
             }
         })
         .collect();
-    Ok(RingMatch {
+    let matched = RingMatch {
         reference,
         correspondence: Correspondence::new(rows)?,
         report: MatchReport { poses },
-    })
+    };
+    Ok((matched, beside))
 }
 
 /// The first pose, unless another's sum of coarse costs to all others is clearly less; then the one with the least.
@@ -302,14 +323,6 @@ fn carry_to_reference(forms: &[Form], reference: usize, landmarks: &mut [Landmar
         landmarks[missing].at[reference] = Some(wrapped(mean) % 1.0);
     }
     Ok(())
-}
-
-/// Matches all poses, to the reference and then to one another.
-fn match_all(forms: &[Form], reference: usize, landmarks: &[Landmark]) -> Result<StarMatch, MatchError> {
-    let all: Vec<usize> = (0..forms.len()).collect();
-    let mut matched = match_some(forms, reference, landmarks, &all)?;
-    match_jointly(forms, &mut matched);
-    Ok(matched)
 }
 
 /// Matches of some poses to the reference, which has none itself.

@@ -3,7 +3,9 @@
 use super::{PipelineError, Stage};
 use crate::compatible::{Simplification, Simplified, SimplifiedAlone, SimplifyError, SimplifyOptions};
 use crate::input::Drawing;
-use crate::matching::{Correspondence, Landmark, MatchError, MatchOptions, MatchReport, MirrorHints, match_rings};
+use crate::matching::{
+    Correspondence, Landmark, MatchError, MatchOptions, MatchReport, MirrorHints, match_rings, match_rings_beside,
+};
 use crate::math::Point;
 use crate::outline::{Outline, Ring};
 use crate::scene::Scene;
@@ -38,12 +40,9 @@ impl Boundaries {
         let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
         let refusal = |error| simplify_refusal(&scene.names(), error);
         let given = outlines.clone();
-        // Matching goes from pose to pose and leaves most processors idle.
-        let (matched, alone) = rayon::join(
-            || match_outlines(scene, &mut outlines, on_outline),
-            || alone(&given, on_outline, &options, before),
-        );
-        let (matched, alone) = (matched?, alone.map_err(refusal)?);
+        let alone = || alone(&given, on_outline, &options, before);
+        let (matched, alone) = match_outlines(scene, &mut outlines, on_outline, alone)?;
+        let alone = alone.map_err(refusal)?;
         begins(Stage::Simplification);
         let pinned: Vec<Vec<f64>> = on_outline
             .iter()
@@ -95,8 +94,14 @@ pub(super) struct Matched {
     pub(super) holes: Vec<MatchReport>,
 }
 
-/// Matches the outer rings, puts the holes of all poses in one order, and matches them.
-fn match_outlines(scene: &Scene, outlines: &mut [Outline], landmarks: &[Landmark]) -> Result<Matched, PipelineError> {
+/// Matches the outer rings, puts the holes of all poses in one order, and matches them; `beside` is other work, done where
+/// matching leaves processors idle.
+fn match_outlines<T: Send>(
+    scene: &Scene,
+    outlines: &mut [Outline],
+    landmarks: &[Landmark],
+    beside: impl FnOnce() -> T + Send,
+) -> Result<(Matched, T), PipelineError> {
     let names = scene.names();
     let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
     let mut options = MatchOptions {
@@ -104,7 +109,7 @@ fn match_outlines(scene: &Scene, outlines: &mut [Outline], landmarks: &[Landmark
         ..MatchOptions::default()
     };
     let refusal = |error| match_refusal(&names, error);
-    let first = match_rings(&outer, landmarks, &options).map_err(refusal)?;
+    let (first, beside) = match_rings_beside(&outer, landmarks, &options, beside).map_err(refusal)?;
     order_holes(outlines, first.reference)?;
     let mut matched = Matched {
         reference: first.reference,
@@ -120,7 +125,7 @@ fn match_outlines(scene: &Scene, outlines: &mut [Outline], landmarks: &[Landmark
         matched.correspondences.push(of_hole.correspondence);
         matched.holes.push(of_hole.report);
     }
-    Ok(matched)
+    Ok((matched, beside))
 }
 
 /// The simplification's refusal with the pose's name.
