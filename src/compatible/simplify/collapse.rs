@@ -16,6 +16,8 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
+use rayon::prelude::*;
+
 use super::edge_grid::EdgeGrid;
 use super::tuples::{Tuple, TupleRing};
 use crate::math::{Point, point, predicate, wrapped};
@@ -202,8 +204,12 @@ impl<'a> Collapser<'a> {
 
     /// As [`Self::run`], and which of the tuples, all rings in a row, remain.
     pub(super) fn survivors(mut self) -> (Vec<TupleRing>, Vec<usize>) {
-        for b in 0..self.tuples.len() {
-            self.enqueue(b);
+        let candidates: Vec<_> = (0..self.tuples.len())
+            .into_par_iter()
+            .map(|b| self.candidate(b))
+            .collect();
+        for (b, candidate) in candidates.into_iter().enumerate() {
+            self.enqueue(b, candidate);
         }
         let mut blocked: Vec<usize> = Vec::new();
         let mut progress = false;
@@ -227,7 +233,7 @@ impl<'a> Collapser<'a> {
             progress = false;
             for b in std::mem::take(&mut blocked) {
                 if self.alive[b] {
-                    self.enqueue(b);
+                    self.enqueue(b, self.candidate(b));
                 }
             }
         }
@@ -258,9 +264,9 @@ impl<'a> Collapser<'a> {
         self.ring_sizes[self.ring_of[vertex]] <= 3
     }
 
-    fn enqueue(&mut self, b: usize) {
+    fn enqueue(&mut self, b: usize, candidate: Option<(f64, Vec<Merge>)>) {
         self.stamps[b] += 1;
-        if let Some((cost, merges)) = self.candidate(b) {
+        if let Some((cost, merges)) = candidate {
             self.queue.push(Reverse(Queued {
                 cost,
                 vertex: b,
@@ -447,7 +453,7 @@ impl<'a> Collapser<'a> {
         self.previous[d] = b;
         self.ring_sizes[self.ring_of[b]] -= 1;
         for edge in [self.previous[a], a, b, d] {
-            self.enqueue(edge);
+            self.enqueue(edge, self.candidate(edge));
         }
     }
 }
