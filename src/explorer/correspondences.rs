@@ -1,5 +1,7 @@
 //! Which point of every outline corresponds to which, and the drawings beneath.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
+
 use inbetween::input::{Drawing, Picture};
 use inbetween::math::{Point, point};
 use inbetween::mesh::PointLocator;
@@ -36,7 +38,8 @@ pub(super) fn correspondences(request: &Request, session: &Session) -> Result<Re
     let samples = index(request, "samples", MOST_SAMPLES + 1)?;
     if let Some(bench) = &shown.bench {
         let layer = asked_layer(request, bench)?;
-        let mut answer = matched(bench, layer, samples);
+        let known: Vec<&str> = request.value("known").unwrap_or_default().split(',').collect();
+        let mut answer = matched(bench, layer, samples, &known);
         answer["shape"] = shown.revisions.shape.into();
         return Ok(Response::json(&answer));
     }
@@ -50,6 +53,17 @@ fn outline_json(outline: &Outline) -> (Value, Value) {
     (flat(outline.outer().points()).into(), json!(holes))
 }
 
+/// What tells this outline, and all that follows from it alone, from others.
+fn mark_of(outline: &Outline) -> String {
+    let mut hasher = DefaultHasher::new();
+    for ring in outline.rings() {
+        ring.points().len().hash(&mut hasher);
+        let numbers = ring.points().iter().flat_map(|p| [p.x, p.y]);
+        numbers.for_each(|number| number.to_bits().hash(&mut hasher));
+    }
+    format!("{:016x}", hasher.finish())
+}
+
 fn picture_json(picture: &Picture) -> Value {
     json!({
         "origin": pair(picture.origin), "scale": picture.pixels_per_unit,
@@ -57,7 +71,8 @@ fn picture_json(picture: &Picture) -> Value {
     })
 }
 
-fn matched(bench: &Workbench, layer: usize, samples: usize) -> Value {
+/// `known`: the marks of the outlines that whoever asks has.
+fn matched(bench: &Workbench, layer: usize, samples: usize, known: &[&str]) -> Value {
     let (shape, report) = (&bench.layers()[layer], bench.report(layer));
     let mapping = shape.mapping();
     let scene = bench.scene().of_layer(layer);
@@ -70,18 +85,25 @@ fn matched(bench: &Workbench, layer: usize, samples: usize) -> Value {
         .collect();
     let at = |pose: usize, t: f64| pair(curves[pose].at(t));
     let pose_json = |pose: usize| {
-        let (outline, holes) = outline_json(&mapping.outlines[pose]);
         let matched = &report.matching.poses[pose];
-        let salient = matched.salient.iter();
-        json!({
+        let mark = mark_of(&mapping.outlines[pose]);
+        let is_known = known.contains(&mark.as_str());
+        let mut answer = json!({
+            "mark": mark,
             "pose": shape.poses()[pose], "name": mapping.poses.names()[pose], "drawn": drawn.contains(&pose),
-            "outline": outline, "holes": holes,
             "picture": picture_json(&bench.drawings(layer)[texture_of[pose]].picture),
-            "salient": salient.map(|s| json!({
-                "at": at(pose, s.parameter), "scale": s.scale, "curvature": s.curvature,
-            })).collect::<Vec<_>>(),
             "cost": matched.cost, "looks_mirrored": matched.looks_mirrored,
-        })
+        });
+        if !is_known {
+            let salient = matched.salient.iter().map(|s| {
+                json!({
+                    "at": at(pose, s.parameter), "scale": s.scale, "curvature": s.curvature,
+                })
+            });
+            (answer["outline"], answer["holes"]) = outline_json(&mapping.outlines[pose]);
+            answer["salient"] = salient.collect();
+        }
+        answer
     };
     let poses = 0..mapping.poses.len();
     let sections = Sections::new(mapping, &report.matching, &report.landmarks);

@@ -143,13 +143,14 @@
 //!
 //! # Correspondences
 //!
-//! `GET api/correspondences?layer=0&samples=0`:
+//! `GET api/correspondences?layer=0&samples=0&known=MARK,MARK`:
 //! ```json
 //! {"shape": 2, "reference": 0,
 //!  "poses": [{"pose": 0, "name": "stand", "drawn": true,   // a copy is not drawn: no landmark can be put on it
+//!             "mark": "9f3c61d20b7a4e58",    // of its outline: who says that it is known is not sent the next three again
 //!             "outline": [x, y, x, y, ...], "holes": [[x, y, ...], ...],
-//!             "picture": {"origin": [0, 0], "scale": 1, "width": 640, "height": 720},
 //!             "salient": [{"at": [x, y], "scale": 0.02, "curvature": 3.1}, ...],  // scale: the widest smoothing it survives
+//!             "picture": {"origin": [0, 0], "scale": 1, "width": 640, "height": 720},
 //!             "cost": 0.4, "looks_mirrored": false}, ...],  // the poses of the layer
 //!  "links": [{"at": [[x, y], ...], "landmark": null}, ...],  // numbered from 1; one point a pose of the layer
 //!  "costs": [[0.3, ...], ...],                              // per pose, from link k to the next: how unlike the outlines are

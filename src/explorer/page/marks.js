@@ -3,12 +3,15 @@ import { s, set } from './dom.js';
 import { match, ownLandmarks, placesOf } from './match.js';
 import { store } from './state.js';
 
-/** Fills a layer of a cell unless it was made of the very same things already: what is not touched is not painted again. */
-function fill(layer, of, make) {
-  const same = layer.madeOf?.length === of.length && of.every((value, k) => Object.is(value, layer.madeOf[k]));
-  if (same) return;
+/** Whether a layer of a cell was not made of the very same things already: what is not touched is not painted again. */
+function isStale(layer, of) {
+  const before = layer.madeOf;
   layer.madeOf = of;
-  layer.replaceChildren(...make());
+  return before?.length !== of.length || of.some((value, k) => !Object.is(value, before[k]));
+}
+
+function fill(layer, of, make) {
+  if (isStale(layer, of)) layer.replaceChildren(...make());
 }
 
 /** Draws all but the picture; `px`: drawing units of a CSS pixel. */
@@ -17,7 +20,7 @@ export function drawCell(cell, px) {
   const { data, pointed } = match;
   const pose = data.poses[index];
   const ring = (points) => `M${pairs(points).map((p) => p.join(' ')).join('L')}Z`;
-  fill(layers.outline, [pose, px], () => [
+  fill(layers.outline, [pose.outline, px], () => [
     ...(pose.outline ? [s('path', { d: [pose.outline, ...pose.holes].map(ring).join(''), 'stroke-width': 1.5 * px })] : []),
     ...salient(pose, px),
   ]);
@@ -71,6 +74,9 @@ function meshPath(index, px) {
 
 /** The landmarks of a pose: given ones solid, carried ones hollow or dashed. Those that look as before stay. */
 function drawMarks(cell, px) {
+  const { data, chosen, pointed, held } = match;
+  const problems = (store.state.problems ?? []).map((problem) => problem.landmark);
+  if (!isStale(cell.layers.marks, [data, store.scene, px, cell.view, chosen, pointed, held, JSON.stringify([match.fresh, problems])])) return;
   const before = cell.marks ?? new Map();
   cell.marks = new Map();
   const add = (name, path, places, kind) => {

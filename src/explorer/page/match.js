@@ -15,20 +15,27 @@ export const match = {
   held: null,
 };
 
-/** Takes an answer. */
-export function takeMatch(data) {
+/** Takes an answer, which leaves out the outlines that are those of the match before. */
+export function takeMatch(data, before) {
   match.data = data;
+  for (const pose of data.poses.filter((pose) => pose.outline === undefined)) {
+    const { outline, holes, salient } = before.poses.find((other) => other.mark === pose.mark);
+    Object.assign(pose, { outline, holes, salient });
+  }
   const coloured = (landmark) => ({ ...landmark, hue: hue(landmark.kind === 'line' ? null : landmark.at[data.reference]?.[0]) });
   match.known = new Map((data.landmarks ?? []).map((landmark) => [landmark.name, coloured(landmark)]));
   data.links?.forEach((link) => (link.hue = hue(link.at[data.reference])));
 }
 
+/** Places of an outline that are told apart by their hue. */
+const HUES = 720;
 /** A colour for what lies at a place of the reference's outline: once around the circle of hues. */
 function hue(at) {
   const outline = match.data.poses[match.data.reference]?.outline;
   if (!outline || !at) return 'hsl(226 70% 52%)';
   let [best, where] = [Infinity, 0];
-  for (let k = 0; k < outline.length; k += 2) {
+  const step = 2 * Math.max(1, Math.floor(outline.length / 2 / HUES));
+  for (let k = 0; k < outline.length; k += step) {
     const far = (outline[k] - at[0]) ** 2 + (outline[k + 1] - at[1]) ** 2;
     if (far < best) [best, where] = [far, k];
   }

@@ -21,9 +21,10 @@ async function read() {
   reading++;
   try {
     const layer = store.layer;
-    const answer = await getJson('correspondences', { layer, samples: 0 });
+    const before = match.data;
+    const answer = await getJson('correspondences', { layer, samples: 0, known: before?.poses.map((pose) => pose.mark) });
     if (layer !== store.layer || mine !== reads) return;
-    takeMatch(answer);
+    takeMatch(answer, before);
   } catch (error) {
     emit('refused', error.problem ?? { message: error.message });
     draw();
