@@ -28,44 +28,49 @@ async function moveLandmarks() {
   const movable = landmarks.filter((landmark) => !landmark.path && (landmark.layer ?? 0) === store.layer);
   const times = [];
   if (movable.length === 0) return times;
+  const opened = once('matched', () => true);
   look({ main: 'matches' });
-  await displayed();
-  await displayed();
+  await opened;
+  await rest();
   for (let k = 0; k < LANDMARKS; k++) {
     const { name, at } = movable[Math.floor((k * movable.length) / LANDMARKS)];
     const [pose, [x, y]] = Object.entries(at).find(([own]) => poses.some((other) => other.name === own));
     const drag = new Drag('measure');
     const before = store.state.revisions.shape;
-    const seen = new Promise((done) => {
-      const started = performance.now();
-      const stop = on('matched', (shape) => shape > before && (stop(), done(performance.now() - started)));
-      setTimeout(() => (stop(), done(null)), 5000);
-    });
+    const seen = once('matched', (shape) => shape > before);
+    const started = performance.now();
     drag.to([{ op: 'move_landmark', landmark: name, at: { [pose]: [x + 1.5, y + 0.5] } }]);
-    const time = await seen;
-    if (time !== null) times.push(time);
+    if (await seen) times.push(performance.now() - started);
     const shape = store.state.revisions.shape;
     await drag.cancel();
     for (let wait = 0; wait < 40 && store.state.revisions.shape === shape; wait++) await new Promise((go) => setTimeout(go, 50));
-    // The camera is found anew when nobody drags, after the shape is there.
-    await new Promise((go) => setTimeout(go, 300));
+    await rest();
   }
   look({ main: 'picture' });
   return times;
 }
 
-const displayed = () => new Promise((done) => requestAnimationFrame(done));
-
-/** Until something has been drawn: a page may open before its scene is mapped. */
-async function drawnOnce() {
-  if (store.pixel > 0) return;
-  await new Promise((done) => {
-    const stop = on('drawn', () => (stop(), done()));
+/** Until an event that is meant; false if none comes. */
+function once(name, isMeant, patience = 5000) {
+  return new Promise((done) => {
+    const end = (came) => {
+      stop();
+      clearTimeout(giveUp);
+      done(came);
+    };
+    const stop = on(name, (detail) => isMeant(detail) && end(true));
+    const giveUp = setTimeout(() => end(false), patience);
   });
 }
 
+/** What follows a change when nobody drags (the camera is found anew, pictures are drawn) is over soon. */
+const rest = () => new Promise((go) => setTimeout(go, 400));
+
+const displayed = () => new Promise((done) => requestAnimationFrame(done));
+
 export async function measure() {
-  await drawnOnce();
+  // A page may open before its scene is mapped.
+  if (!(store.pixel > 0)) await once('drawn', () => true, 600_000);
   const table = h('table', {});
   const dialog = h('dialog', { class: 'dialog bench', 'aria-label': 'Measurements' }, h('header', {}, h('h2', {}, 'Measurements')), table);
   document.body.append(dialog);
