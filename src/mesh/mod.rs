@@ -11,4 +11,5 @@ pub mod validity;
 pub use flattening::first_flat;
 pub use locate::{Located, PointLocator};
 pub use mesh_point::MeshPoint;
+pub(crate) use topology::undirected;
 pub use topology::{Topology, TopologyError, directed_edges};

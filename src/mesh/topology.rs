@@ -155,7 +155,7 @@ impl Topology {
         let mut edges: Vec<_> = self
             .triangles
             .iter()
-            .flat_map(|&t| directed_edges(t).map(|(a, b)| (a.min(b), a.max(b))))
+            .flat_map(|&t| directed_edges(t).map(|(a, b)| undirected(a, b)))
             .collect();
         edges.sort_unstable();
         edges.dedup();
@@ -248,6 +248,11 @@ impl Topology {
 #[must_use]
 pub fn directed_edges([a, b, c]: [usize; 3]) -> [(usize, usize); 3] {
     [(a, b), (b, c), (c, a)]
+}
+
+/// An edge by its ends whichever way it runs: the smaller number first.
+pub(crate) fn undirected(a: usize, b: usize) -> (usize, usize) {
+    (a.min(b), a.max(b))
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use super::super::editable::EditableMesh;
-use crate::mesh::geometry;
+use crate::mesh::{directed_edges, geometry, undirected};
 
 /// A flip has to gain this much, in radians: equal configurations must not alternate.
 const SMALLEST_GAIN_RAD: f64 = 1e-9;
@@ -14,7 +14,7 @@ const SMALLEST_GAIN_RAD: f64 = 1e-9;
 /// Passes over all edges, at most. Each flip raises a worst angle, so the passes end by themselves; three or four do.
 const PASSES: usize = 12;
 
-/// An edge by its ends, the smaller number first.
+/// An edge as [`undirected`] has it.
 type Edge = (usize, usize);
 
 /// Flips until no flip helps; returns how many were made. The edges of `paths` stay.
@@ -22,11 +22,11 @@ pub(super) fn flip(mesh: &mut EditableMesh, paths: &[Vec<usize>]) -> usize {
     let kept: BTreeSet<Edge> = paths
         .iter()
         .flat_map(|path| path.windows(2))
-        .map(|link| edge(link[0], link[1]))
+        .map(|link| undirected(link[0], link[1]))
         .collect();
     let edges: Vec<Edge> = mesh
         .triangles()
-        .flat_map(|(_, triangle)| crate::mesh::directed_edges(triangle))
+        .flat_map(|(_, triangle)| directed_edges(triangle))
         .filter(|ends| ends.0 < ends.1 && !kept.contains(ends))
         .collect();
     let gains = |&(a, b): &Edge| gaining_flip(mesh, a, b).is_some();
@@ -40,9 +40,9 @@ pub(super) fn flip(mesh: &mut EditableMesh, paths: &[Vec<usize>]) -> usize {
             };
             flip_edge(mesh, (a, b), (c, d));
             total += 1;
-            next.insert(edge(c, d));
+            next.insert(undirected(c, d));
             // Where nothing changes, nothing more is to be gained. A pass goes up once, and leaves out what it made.
-            let around = [edge(a, c), edge(c, b), edge(b, d), edge(d, a)];
+            let around = [undirected(a, c), undirected(c, b), undirected(b, d), undirected(d, a)];
             for other in around.into_iter().filter(|other| !kept.contains(other)) {
                 let is_ahead = other > (a, b) && !next.contains(&other);
                 if is_ahead { &mut now } else { &mut next }.insert(other);
@@ -54,10 +54,6 @@ pub(super) fn flip(mesh: &mut EditableMesh, paths: &[Vec<usize>]) -> usize {
         now = next;
     }
     total
-}
-
-fn edge(a: usize, b: usize) -> Edge {
-    (a.min(b), a.max(b))
 }
 
 /// The ends that the edge `a b` would have if it were flipped, if it exists, is interior, and gains by it.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::super::editable::{Curves, EditableMesh};
 use crate::math::Point;
+use crate::mesh::{directed_edges, undirected};
 
 /// Power of the mean over the poses: nearly the longest counts, since a limb that is short in most poses and long in one has
 /// to bend there, too.
@@ -20,7 +21,6 @@ pub(super) fn split_long_edges(mesh: &mut EditableMesh, curves: &mut Curves, dia
         }
     }
     let mut on_path: BTreeMap<(usize, usize), usize> = BTreeMap::new();
-    let undirected = |a: usize, b: usize| (a.min(b), a.max(b));
     for (path, vertices) in curves.paths.iter().enumerate() {
         on_path.extend(vertices.windows(2).map(|link| (undirected(link[0], link[1]), path)));
     }
@@ -29,7 +29,7 @@ pub(super) fn split_long_edges(mesh: &mut EditableMesh, curves: &mut Curves, dia
     loop {
         let mut long: Vec<(f64, usize, usize)> = mesh
             .triangles()
-            .flat_map(|(_, triangle)| crate::mesh::directed_edges(triangle))
+            .flat_map(|(_, triangle)| directed_edges(triangle))
             .filter(|&(a, b)| a < b || on_boundary.contains_key(&(a, b)))
             .map(|(a, b)| (power_mean_length(mesh, diagonals, a, b), a, b))
             .filter(|edge| edge.0 > length)
@@ -128,7 +128,7 @@ mod tests {
         };
         split_long_edges(&mut mesh, &mut curves, &[1.0; 8], 0.08);
         let longest = |pose: usize| {
-            let edges = mesh.triangles().flat_map(|(_, t)| crate::mesh::directed_edges(t));
+            let edges = mesh.triangles().flat_map(|(_, t)| directed_edges(t));
             let places = &mesh.positions[pose];
             edges.map(|(a, b)| (places[b] - places[a]).norm()).fold(0.0, f64::max)
         };

@@ -168,7 +168,7 @@ fn chords_of(count: usize, triangles: &[[usize; 3]]) -> Vec<Chord> {
     let mut chords: Vec<Chord> = triangles
         .iter()
         .flat_map(|&t| crate::mesh::directed_edges(t))
-        .map(|(a, b)| (a.min(b), a.max(b)))
+        .map(|(a, b)| crate::mesh::undirected(a, b))
         .filter(|&(a, b)| b - a > 1 && !(a == 0 && b == count - 1))
         .collect();
     chords.sort_unstable();
