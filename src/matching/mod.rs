@@ -19,6 +19,7 @@ mod landmark;
 mod monotone;
 mod n_way;
 mod pair;
+mod reflection;
 mod start;
 mod thin_plate;
 
