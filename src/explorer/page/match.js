@@ -29,6 +29,7 @@ export function takeMatch(data, before) {
 
 /** Places of an outline that are told apart by their hue. */
 const HUES = 720;
+
 /** A colour for what lies at a place of the reference's outline: once around the circle of hues. */
 function hue(at) {
   const outline = match.data.poses[match.data.reference]?.outline;

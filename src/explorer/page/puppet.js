@@ -168,19 +168,14 @@ export class PuppetPainter {
     gl.bindBuffer(gl.ARRAY_BUFFER, this.corners.buffer);
     for (const k of frame.order) {
       if (!this.layers[k]) continue;
-      const { triangles } = this.layers[k];
+      const { inside } = this.layers[k].mesh;
       const { positions } = frame.layers[k];
-      // Each triangle has its own corners, so that they can be told apart; the last one comes first.
-      const corners = new Float32Array(2 * triangles.length);
-      for (let t = triangles.length - 3, to = 0; t >= 0; t -= 3) {
-        for (const vertex of [triangles[t], triangles[t + 1], triangles[t + 2]]) {
-          corners[to++] = positions[2 * vertex];
-          corners[to++] = positions[2 * vertex + 1];
-        }
-      }
+      // Each triangle has its own corners, so that they can be told apart.
+      const corners = new Float32Array(2 * inside.length);
+      inside.forEach((vertex, to) => corners.set(positions.subarray(2 * vertex, 2 * vertex + 2), 2 * to));
       gl.bufferData(gl.ARRAY_BUFFER, corners, gl.STREAM_DRAW);
       attribute(gl, 0, 0);
-      gl.drawArrays(gl.TRIANGLES, 0, triangles.length);
+      gl.drawArrays(gl.TRIANGLES, 0, inside.length);
     }
   }
 }

@@ -26,7 +26,7 @@ ${each('out vec2 uv$;')}
 void main() {
   ${each('uv$ = at$;')}
   gl_Position = placed();
-}`, `${LIGHT}
+}`, `${inLight ? LIGHT : ''}
 uniform sampler2D areas;
 ${each('uniform sampler2D picture$;')}
 uniform float weights[${count}];

@@ -16,7 +16,7 @@ export class SkirtedMesh {
     // The last triangle is drawn first, its corners in their order.
     for (let k = 0; k < triangles.length; k++) indices[k] = triangles[triangles.length - 3 - 3 * Math.floor(k / 3) + (k % 3)];
     indices.set(skirt, triangles.length);
-    [this.inside, this.outside] = [triangles.length, skirt.length];
+    [this.inside, this.outside] = [indices.subarray(0, triangles.length), skirt.length];
     this.values = new Float32Array(2 * (vertices + this.rim.length));
     this.array = gl.createVertexArray();
     [this.indices, this.places, this.coordinates] = [0, 1, 2].map(() => gl.createBuffer());
@@ -57,10 +57,10 @@ export class SkirtedMesh {
   draw() {
     const { gl } = this;
     gl.enable(gl.CULL_FACE);
-    gl.drawElements(gl.TRIANGLES, this.inside, gl.UNSIGNED_INT, 0);
+    gl.drawElements(gl.TRIANGLES, this.inside.length, gl.UNSIGNED_INT, 0);
     // Wherever the skirt folds, it is still the boundary's colour.
     gl.disable(gl.CULL_FACE);
-    gl.drawElements(gl.TRIANGLES, this.outside, gl.UNSIGNED_INT, 4 * this.inside);
+    gl.drawElements(gl.TRIANGLES, this.outside, gl.UNSIGNED_INT, this.inside.byteLength);
   }
 
   free() {
