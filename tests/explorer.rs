@@ -13,6 +13,8 @@ use inbetween::math::Point;
 use inbetween::pipeline::Character;
 use inbetween::scene::Scene;
 use serde_json::{Value, json};
+use tungstenite::protocol::Role;
+use tungstenite::{Message, WebSocket};
 
 /// How long anything may take on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -233,6 +235,64 @@ fn only_the_own_page_is_answered() {
     assert_eq!(explorer.get("api/nothing").status, 404);
     assert_eq!(explorer.get("api/edit").status, 405);
     assert_eq!(explorer.post("api/undo", &json!({})).status, 409);
+}
+
+#[test]
+fn a_connection_that_stays_open_answers_the_same() {
+    let explorer = Explorer::of("clown", as_it_is);
+    explorer.settled();
+    let upgrade = "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+    let asking = |token: &str, origin: &str| {
+        let mut stream = TcpStream::connect(("127.0.0.1", explorer.port)).expect("it listens");
+        stream.set_read_timeout(Some(PATIENCE)).expect("set");
+        write!(
+            stream,
+            "GET /{token}/api/socket HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nOrigin: {origin}\r\n{upgrade}\r\n",
+            explorer.port
+        )
+        .expect("sent");
+        let mut from = BufReader::new(stream);
+        let mut head = String::new();
+        while !head.ends_with("\r\n\r\n") {
+            assert!(from.read_line(&mut head).expect("an answer") > 0, "{head}");
+        }
+        (head, from.into_inner())
+    };
+    let own = format!("http://127.0.0.1:{}", explorer.port);
+    for (token, origin) in [
+        (explorer.token.as_str(), "http://evil.example"),
+        ("0123456789abcdef0123456789abcdef", own.as_str()),
+    ] {
+        assert!(asking(token, origin).0.starts_with("HTTP/1.1 403 "), "{token} {origin}");
+    }
+    let (head, stream) = asking(&explorer.token, &own);
+    // The example of RFC 6455, 1.3.
+    assert!(head.contains("s3pPLMBiTxaQ9kYGzzhZRbK+xOo="), "{head}");
+    let mut socket = WebSocket::from_raw_socket(stream, Role::Client, None);
+    let mut asked = |message: Message| {
+        socket.send(message).expect("sent");
+        let bytes = socket.read().expect("an answer").into_data();
+        let status = u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+        (status, bytes[4..].to_vec())
+    };
+    for route in ["frame?at=0.3,0.4&silhouette=1", "mesh", "scene", "weights?at=%2B0.1,0"] {
+        let by_itself = explorer.get(&format!("api/{route}"));
+        let answer = asked(Message::text(format!("GET {route}\n")));
+        assert_eq!(answer, (u32::from(by_itself.status), by_itself.body), "{route}");
+    }
+    for (message, status) in [
+        (Message::text("GET frame\n"), 400),
+        (Message::text("GET"), 400),
+        (Message::binary(vec![1, 2, 3]), 400),
+        (Message::text("GET nothing\n"), 404),
+        (Message::text("PUT scene\n"), 405),
+        (Message::text("POST undo\n{}"), 409),
+    ] {
+        assert_eq!(asked(message.clone()).0, status, "{message}");
+    }
+    let edit = json!({"ops": [{"op": "set", "table": "texture", "key": "sharpness", "value": 0.25}]});
+    assert_eq!(asked(Message::text(format!("POST edit\n{edit}"))).0, 200);
+    assert!(explorer.text().contains("sharpness = 0.25"));
 }
 
 #[test]

@@ -19,7 +19,7 @@ const MOST_HEAD: u64 = 32 * 1024;
 /// The most headers of a request.
 const MOST_HEADERS: usize = 64;
 /// The longest body of a request.
-const MOST_BODY: usize = 16 * 1024 * 1024;
+pub(super) const MOST_BODY: usize = 16 * 1024 * 1024;
 
 /// A request.
 #[derive(Debug, Clone, Default)]
@@ -60,16 +60,15 @@ impl Request {
             Err(httparse::Error::TooManyHeaders) => return Err(NoRequest::Bad(431)),
             Ok(httparse::Status::Partial) | Err(_) => return Err(NoRequest::Bad(400)),
         }
-        let target = head.path.unwrap_or_default();
-        let (path, query) = target.split_once('?').unwrap_or((target, ""));
+        let (path, query) = target(head.path.unwrap_or_default()).ok_or(NoRequest::Bad(400))?;
         let header = |header: &httparse::Header<'_>| {
             let value = std::str::from_utf8(header.value).map_err(|_| NoRequest::Bad(400))?;
             Ok((header.name.to_ascii_lowercase(), value.trim().to_owned()))
         };
         let mut request = Self {
             method: head.method.unwrap_or_default().to_owned(),
-            path: decoded(path).ok_or(NoRequest::Bad(400))?,
-            query: pairs(query).ok_or(NoRequest::Bad(400))?,
+            path,
+            query,
             headers: head.headers.iter().map(header).collect::<Result<_, NoRequest>>()?,
             body: Vec::new(),
         };
@@ -88,6 +87,20 @@ impl Request {
             request.body = body;
         }
         Ok(request)
+    }
+
+    /// The request that a message `METHOD ROUTE?QUERY`, a line break, and the body is; the route is its path.
+    pub(crate) fn from_message(text: &str) -> Option<Self> {
+        let (line, body) = text.split_once('\n')?;
+        let (method, of) = line.split_once(' ')?;
+        let (path, query) = target(of)?;
+        Some(Self {
+            method: method.to_owned(),
+            path,
+            query,
+            headers: Vec::new(),
+            body: body.as_bytes().to_vec(),
+        })
     }
 
     /// A header by its name in lower case.
@@ -124,6 +137,12 @@ fn head(from: &mut impl BufRead) -> Result<Vec<u8>, NoRequest> {
             _ => {}
         }
     }
+}
+
+/// The path and the query of a target, decoded.
+fn target(text: &str) -> Option<(String, Vec<(String, String)>)> {
+    let (path, query) = text.split_once('?').unwrap_or((text, ""));
+    Some((decoded(path)?, pairs(query)?))
 }
 
 /// Undoes the percent encoding; nothing if it is none. A plus is the sign of a number rather than a space.
@@ -250,6 +269,19 @@ mod tests {
             (Some("localhost:1"), &b"{}"[..])
         );
         assert!(request.keeps_connection());
+    }
+
+    #[test]
+    fn a_message_is_a_request_without_headers() {
+        let request = Request::from_message("POST edit?x=%2B1\n{\"a\":\n1}").expect("a request");
+        assert_eq!((request.method.as_str(), request.path.as_str()), ("POST", "edit"));
+        assert_eq!(
+            (request.value("x"), &request.body[..]),
+            (Some("+1"), &b"{\"a\":\n1}"[..])
+        );
+        for bad in ["", "GET state", "GET\n", "GET %zz\n"] {
+            assert!(Request::from_message(bad).is_none(), "{bad}");
+        }
     }
 
     #[test]

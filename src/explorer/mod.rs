@@ -2,7 +2,7 @@
 //!
 //! The page ([`page`]) is plain HTML, CSS and JavaScript in the binary. It asks this server for everything that is computed, and
 //! tells it every edit; the server owns the scene's text, its undo and the file. Files here: [`http`] (the protocol), [`security`]
-//! (who is answered), [`server`] (connections, routes), [`session`] (the state), [`document`] (the scene's text, undo, saving),
+//! (who is answered), [`server`] (connections), [`socket`] (those that stay open), [`routes`], [`session`] (the state), [`document`] (the scene's text, undo, saving),
 //! [`edit`] (edits of the text), [`model`] (what is computed of a scene), [`worker`] (heavy work, and the look at the disk), and
 //! one file a group of answers.
 //!
@@ -22,6 +22,10 @@
 //! POST bodies are JSON with `Content-Type: application/json` (415 otherwise). JSON numbers read back to the same f64. Binary
 //! answers are little-endian, everything in them is 4 bytes wide (u32 or f32), so they can be viewed as `Uint32Array` and
 //! `Float32Array`.
+//!
+//! `api/socket` is a WebSocket for many small requests in a row, over which the page asks for nearly all it asks for: a text message
+//! `METHOD ROUTE?QUERY`, a line break and the body; the answer is a binary message, the status (u32), then the body. One at a time. The routes
+//! are those below, without `api/`.
 //!
 //! Coordinates: *places* are points of the pose space, #dimensions numbers. *Drawing units* are source pixels or SVG user units,
 //! x right, y down, of the drawings as they are used: those of a pose with `mirror = true` are reflected already, and so is
@@ -262,10 +266,12 @@ mod picture_cache;
 mod pictures;
 mod problem;
 mod reweighting;
+mod routes;
 mod scene_json;
 mod security;
 mod server;
 mod session;
+mod socket;
 mod thinning;
 mod wire;
 mod worker;

@@ -1,4 +1,4 @@
-//! Connections and routes: one thread a connection, nothing shared but the [`Session`].
+//! Connections: one thread each, nothing shared but the [`Session`].
 
 use std::io::BufReader;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -8,19 +8,18 @@ use std::time::Duration;
 
 use anyhow::Context as _;
 
-use super::document::Document;
 use super::http::{NoRequest, Request, Response};
 use super::problem::Refusal;
 use super::security::Gate;
 use super::session::Session;
-use super::{correspondences, export, frames, gesture, grids, handles, meshes, page, scene_json};
+use super::{page, routes, socket};
 
 /// Connections at a time; a browser opens six.
 const MOST_CONNECTIONS: usize = 64;
 /// How long a connection may say nothing.
 const LONGEST_SILENCE: Duration = Duration::from_secs(120);
-/// How long the state is waited for.
-const LONGEST_WAIT: Duration = Duration::from_secs(25);
+/// Where a connection becomes a [`socket`].
+const SOCKET: &str = "api/socket";
 
 /// A server that listens, but does not answer yet.
 pub(crate) struct Server {
@@ -79,11 +78,15 @@ fn serve(stream: &TcpStream, gate: &Gate, session: &Arc<Session>) {
     loop {
         let (response, keeps) = match Request::read(&mut from) {
             Ok(request) => {
-                // A bug in one answer does not end the connection.
-                let answer = || answer(&request, gate, session);
-                let response = std::panic::catch_unwind(std::panic::AssertUnwindSafe(answer))
-                    .unwrap_or_else(|_| Refusal::failed("this request failed inside inbetween").response());
-                (response, request.keeps_connection())
+                if let Some(key) = socket::key(&request)
+                    && gate.admitted(&request) == Some(SOCKET)
+                {
+                    // It waits for whatever the page asks next.
+                    let _ = stream.set_read_timeout(None);
+                    let answered = |asked: &Request| unbroken(|| routes::answer(&asked.path, asked, session));
+                    return socket::serve(stream, from.buffer(), key, answered);
+                }
+                (unbroken(|| answer(&request, gate, session)), request.keeps_connection())
             }
             Err(NoRequest::Bad(status)) => (Response::text(status, "this request is not understood\n"), false),
             Err(NoRequest::Closed) => return,
@@ -92,6 +95,12 @@ fn serve(stream: &TcpStream, gate: &Gate, session: &Arc<Session>) {
             return;
         }
     }
+}
+
+/// A bug in one answer does not end the connection.
+fn unbroken(answer: impl FnOnce() -> Response) -> Response {
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(answer))
+        .unwrap_or_else(|_| Refusal::failed("this request failed inside inbetween").response())
 }
 
 fn answer(request: &Request, gate: &Gate, session: &Arc<Session>) -> Response {
@@ -109,83 +118,8 @@ fn answer(request: &Request, gate: &Gate, session: &Arc<Session>) -> Response {
         let content_type = request.header("content-type").unwrap_or_default();
         content_type.split(';').next().map(str::trim) == Some("application/json")
     };
-    match request.method.as_str() {
-        "GET" => {}
-        "POST" if !is_json() => return Response::text(415, "POST application/json\n"),
-        "POST" => {}
-        _ => return Response::text(405, "GET or POST\n"),
+    if request.method == "POST" && !is_json() {
+        return Response::text(415, "POST application/json\n");
     }
-    api(route, request, session).unwrap_or_else(|refusal| refusal.response())
+    routes::answer(route, request, session)
 }
-
-/// The routes of the page of the [explorer](super).
-fn api(route: &str, request: &Request, session: &Arc<Session>) -> Result<Response, Refusal> {
-    let json = |value| Ok(Response::json(&value));
-    let body = &request.body;
-    match (request.method.as_str(), route) {
-        ("GET", "state") => match request.value("after") {
-            None => json(session.state_json()),
-            Some(after) => {
-                let after = after.parse().map_err(|_| Refusal::bad("`after` is no number"))?;
-                json(session.state_after(after, LONGEST_WAIT))
-            }
-        },
-        ("GET", "text") => Ok(Response::text(200, &session.text())),
-        ("GET", "scene") => json(scene_json::scene(session)),
-        ("GET", "frame") => frames::frame(request, session),
-        ("GET", "curves") => frames::curves(request, session),
-        ("GET", "weights") => frames::weights(request, session),
-        ("GET", "puppet") => meshes::puppet(session),
-        ("GET", "mesh") => meshes::mesh(session),
-        ("GET", "texture") => meshes::texture(request, session),
-        ("GET", "drawing") => correspondences::drawing(request, session),
-        ("GET", "correspondences") => correspondences::correspondences(request, session),
-        ("GET", "grid") => grids::weights(request, session),
-        ("GET", "validity") => grids::validity(request, session),
-        ("POST", "carry") => correspondences::carry(body, session),
-        ("POST", "edit") => json(session.edit(body)?),
-        ("POST", "undo") => json(session.step(Document::undo)?),
-        ("POST", "redo") => json(session.step(Document::redo)?),
-        ("POST", "save") => json(session.save()),
-        ("POST", "conflict") => json(session.end_conflict(body)?),
-        ("POST", "deform") => handles::deform(body, session),
-        ("POST", "reach") => handles::reach_place(body, session),
-        ("POST", "path") => json(gesture::path(body, session)?),
-        ("POST", "gesture") => json(gesture::gesture(body, session)?),
-        ("POST", "export") => json(export::start(body, session)?),
-        ("POST", "export/cancel") => json(export::cancel(session)?),
-        ("POST", "command") => json(export::command(body, session)?),
-        (_, route) if ROUTES.contains(&route) => Ok(Response::text(405, "another method is meant\n")),
-        _ => Ok(Response::text(404, "there is no such address\n")),
-    }
-}
-
-/// All routes.
-const ROUTES: &[&str] = &[
-    "state",
-    "text",
-    "scene",
-    "frame",
-    "curves",
-    "weights",
-    "puppet",
-    "mesh",
-    "texture",
-    "drawing",
-    "correspondences",
-    "grid",
-    "validity",
-    "carry",
-    "edit",
-    "undo",
-    "redo",
-    "save",
-    "conflict",
-    "deform",
-    "reach",
-    "path",
-    "gesture",
-    "export",
-    "export/cancel",
-    "command",
-];

@@ -66,6 +66,8 @@ async function proofs() {
   const outside = [];
   page.on('pageerror', (error) => errors.push(error.message));
   page.on('console', (message) => message.type() === 'error' && errors.push(`${message.text()} ${message.location().url.replace(address, '')}`));
+  const kept = [];
+  page.on('websocket', (socket) => (socket.url().startsWith(address.replace('http:', 'ws:')) ? kept : outside).push(socket.url()));
   page.on('request', (asked) => !asked.url().startsWith(address) && !/^(blob|data):/.test(asked.url()) && outside.push(asked.url()));
   await page.goto(address);
   const answer = await page.evaluate(async () => (await fetch('api/scene')).json());
@@ -76,7 +78,7 @@ async function proofs() {
 
   await pixels(page, answer, answer.poses[0].at, 'at the first pose');
   if (plane) await probe(page, answer);
-  if (looksOnly) return reports(outside);
+  if (looksOnly) return reports(outside, kept);
   await keys(page);
   if (plane) await movedPose(page, answer);
   await landmark(page);
@@ -91,11 +93,12 @@ async function proofs() {
   if (plane) await conflict(tools);
   await exported(page);
   await labels(page);
-  reports(outside);
+  reports(outside, kept);
 }
 
-function reports(outside) {
+function reports(outside, kept) {
   check(errors.length === 0, `the page reports no error${errors.length > 0 ? `: ${errors.join('; ')}` : ''}`);
+  check(kept.length > 0 && kept.length <= 6, `${kept.length} connections stayed open for its requests`);
   check(outside.length === 0, `the page asks for nothing elsewhere${outside.length > 0 ? `: ${outside}` : ''}`);
 }
 

@@ -1,4 +1,5 @@
 // Requests to the server behind the page. Addresses are relative: the token is part of the page's own address.
+import { exchange } from './connections.js';
 
 /** An answer that says why there is none: `problem` is what the server wrote. */
 export class Refused extends Error {
@@ -9,13 +10,14 @@ export class Refused extends Error {
   }
 }
 
-async function checked(response) {
-  if (response.ok) return response;
+async function asked(method, route, body) {
+  const answer = await exchange(method, route, body);
+  if (answer.status === 200) return answer;
   let problem = null;
   try {
-    problem = (await response.json()).error;
-  } catch { /* an answer without a body */ }
-  throw new Refused(response.status, problem);
+    problem = JSON.parse(answer.text()).error;
+  } catch { /* an answer that is no JSON */ }
+  throw new Refused(answer.status, problem);
 }
 
 /** `{at: [1, 2], box: null}` as `?at=1,2`. */
@@ -29,37 +31,28 @@ export function query(fields) {
   return text && `?${text}`;
 }
 
-export async function getJson(route, fields = {}, options = {}) {
-  return (await checked(await fetch(`api/${route}${query(fields)}`, options))).json();
+export async function getJson(route, fields = {}) {
+  return JSON.parse((await asked('GET', `${route}${query(fields)}`)).text());
 }
 
 /** The 4-byte numbers of a binary answer. */
-export async function getWords(route, fields = {}, options = {}) {
-  return new Words(await (await checked(await fetch(`api/${route}${query(fields)}`, options))).arrayBuffer());
-}
-
-export async function getText(route) {
-  return (await checked(await fetch(`api/${route}`))).text();
-}
-
-async function post(route, body) {
-  const headers = { 'Content-Type': 'application/json' };
-  return checked(await fetch(`api/${route}`, { method: 'POST', headers, body: JSON.stringify(body) }));
+export async function getWords(route, fields = {}) {
+  return new Words((await asked('GET', `${route}${query(fields)}`)).bytes);
 }
 
 export async function postJson(route, body = {}) {
-  return (await post(route, body)).json();
+  return JSON.parse((await asked('POST', route, body)).text());
 }
 
 export async function postWords(route, body = {}) {
-  return new Words(await (await post(route, body)).arrayBuffer());
+  return new Words((await asked('POST', route, body)).bytes);
 }
 
 /** Little-endian u32 and f32 read one after the other. */
 export class Words {
-  constructor(buffer) {
-    this.whole = new Uint32Array(buffer);
-    this.real = new Float32Array(buffer);
+  constructor({ buffer, byteOffset, byteLength }) {
+    this.whole = new Uint32Array(buffer, byteOffset, byteLength / 4);
+    this.real = new Float32Array(buffer, byteOffset, byteLength / 4);
     this.next = 0;
   }
 

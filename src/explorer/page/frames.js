@@ -1,5 +1,5 @@
 // Frames of where the probe is: one request at a time, and the newest place wins.
-import { getJson, getWords, query, readFrames, Refused, Words } from './api.js';
+import { getJson, getWords, query, readFrames, Refused } from './api.js';
 import { emit, on, store } from './state.js';
 
 let wanted = false;
@@ -92,7 +92,11 @@ on('drawn', () => store.pixel < asked && wantFrame());
 export async function framesOf(name, values, thin = true) {
   if (values.length === 0 || !(store.state?.revisions.shape > 0)) return [];
   const search = values.map((value) => `${name}=${value}`).join('&');
-  const response = await fetch(`api/frame${query(thin ? outlines() : { silhouette: 1 })}&${search}`);
-  if (!response.ok) return [];
-  return readFrames(new Words(await response.arrayBuffer())).filter((frame) => frame.shape === store.puppet?.shape);
+  try {
+    const words = await getWords(`frame${query(thin ? outlines() : { silhouette: 1 })}&${search}`);
+    return readFrames(words).filter((frame) => frame.shape === store.puppet?.shape);
+  } catch (error) {
+    if (error instanceof Refused) return [];
+    throw error;
+  }
 }

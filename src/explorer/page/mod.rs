@@ -29,6 +29,7 @@ const MODULES: &[PageFile] = modules![
     "areas.js",
     "bars.js",
     "bench.js",
+    "connections.js",
     "controls.js",
     "curves.js",
     "dom.js",
