@@ -1,8 +1,9 @@
 // Drives the page of `inbetween explore` in headless Chromium, with real pointer and key events, and checks what it shows and does.
 //
-//   node explorer.mjs COMMAND SCENE FOLDER [look]
+//   node explorer.mjs COMMAND SCENE FOLDER [all|look] [card|processor]
 //
-// With `look` only what the page shows is compared, nothing is edited.
+// With `look` only what the page shows is compared, nothing is edited. The last word is who paints (`?painter=`): WebGL2, which is
+// computed on the processor where there is no graphics card, or the page's own painter, which it takes by itself then.
 //
 // COMMAND is a built `inbetween`. The scene is copied into FOLDER first and edited there; pictures of the page go there, too.
 // playwright-core is looked for in $PLAYERS/node_modules, Chromium at $CHROMIUM. Checks that a scene gives no occasion for
@@ -19,6 +20,7 @@ const players = process.env.PLAYERS ?? '.';
 const { chromium } = createRequire(resolve(players, 'node_modules', 'none.js'))('playwright-core');
 const [command, original, folder] = process.argv.slice(2, 5).map((path) => resolve(path));
 const looksOnly = process.argv[5] === 'look';
+const painter = process.argv[6] ?? 'card';
 const name = basename(dirname(original));
 rmSync(join(folder, name), { recursive: true, force: true });
 mkdirSync(folder, { recursive: true });
@@ -43,7 +45,7 @@ const address = await new Promise((done, refuse) => {
 const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
   headless: true,
-  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
+  args: ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
     '--disable-background-networking', '--disable-component-update', '--disable-sync', '--force-color-profile=srgb',
     '--disable-dev-shm-usage', '--hide-scrollbars'],
 });
@@ -69,10 +71,11 @@ async function proofs() {
   const kept = [];
   page.on('websocket', (socket) => (socket.url().startsWith(address.replace('http:', 'ws:')) ? kept : outside).push(socket.url()));
   page.on('request', (asked) => !asked.url().startsWith(address) && !/^(blob|data):/.test(asked.url()) && outside.push(asked.url()));
-  await page.goto(address);
+  await page.goto(`${address}?painter=${painter}`);
   const answer = await page.evaluate(async () => (await fetch('api/scene')).json());
   const plane = answer.dimension === 2;
   await drawn(page);
+  check(await page.getAttribute('#picture', 'data-painter') === painter, `painted by the ${painter}`);
   check(await page.title() === `${answer.name} – inbetween`, 'the page opens and draws');
   await page.screenshot({ path: join(folder, `${name}-page.png`) });
 

@@ -75,9 +75,10 @@ export async function measure() {
   const dialog = h('dialog', { class: 'dialog bench', 'aria-label': 'Measurements' }, h('header', {}, h('h2', {}, 'Measurements')), table);
   document.body.append(dialog);
   const say = (name, value) => table.append(h('tr', {}, h('th', { scope: 'row' }, name), h('td', {}, value)));
-  const result = {};
+  const result = { painter: byId('picture').dataset.painter };
   say('Scene', `${store.scene.name}: ${store.puppet.layers.reduce((sum, layer) => sum + layer.vertices, 0)} vertices, ${store.puppet.layers.reduce((sum, layer) => sum + layer.triangles, 0)} triangles, ${store.scene.poses.length} poses`);
-  say('Canvas', `${byId('picture').width} × ${byId('picture').height} pixels`);
+  const { width, height, dataset } = byId('picture');
+  say('Canvas', `${width} × ${height} pixels, painted by the ${dataset.painter === 'card' ? 'graphics card' : 'processor'}`);
 
   const requests = [];
   let bytes = 0;

@@ -1,10 +1,5 @@
 // WebGL2, as far as drawing puppets needs it.
 
-/** A context, or null. */
-export function context(canvas) {
-  return canvas.getContext('webgl2', { alpha: true, antialias: false, depth: true, stencil: false, premultipliedAlpha: true });
-}
-
 export function program(gl, vertex, fragment) {
   const made = gl.createProgram();
   for (const [kind, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {

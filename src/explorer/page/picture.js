@@ -3,8 +3,8 @@ import { byId, h, onceAFrame, short } from './dom.js';
 import { curves, placeCurves } from './curves.js';
 import { emit, on, store } from './state.js';
 import { framesOf } from './frames.js';
-import { PuppetPainter } from './puppet.js';
-import { extent } from './skirted.js';
+import { extentOfAll } from './geometry.js';
+import { painterOf } from './painter.js';
 import { drawingView, frameSize, frameView, panBy, zoomBy } from './view.js';
 import { attachHandles, drawHandles, pictureDrag } from './handles.js';
 
@@ -16,8 +16,7 @@ const badge = h('button', { type: 'button', class: 'badge hidden', title: 'Show 
 stage.append(paper, canvas, curves, note, badge);
 attachHandles(stage);
 
-const painter = new PuppetPainter(canvas);
-if (!painter.gl) note.textContent = 'This browser has no WebGL2: the drawing cannot be shown.';
+const painter = painterOf(canvas);
 
 let under = [];
 let loaded = null;
@@ -46,10 +45,10 @@ function draw() {
   const background = store.scene?.animation?.background;
   paper.style.background = background && background !== 'transparent' ? background : '';
   paper.classList.toggle('hidden', !store.frame?.layers.length);
-  if (painter.gl) note.textContent = store.scene && !(store.state.revisions.shape > 0) ? 'There is no drawing yet: the scene cannot be mapped. Matches shows what can be read.' : '';
+  note.textContent = store.scene && !(store.state.revisions.shape > 0) ? 'There is no drawing yet: the scene cannot be mapped. Matches shows what can be read.' : '';
   // While new meshes are on their way the last picture stays.
   if (store.frame?.layers.length && (loaded !== store.puppet || store.frame.shape !== loaded?.shape)) return;
-  if (!painter.gl || !store.frame?.layers.length) {
+  if (!store.frame?.layers.length) {
     if (store.frame) tellWhat();
     return;
   }
@@ -92,7 +91,7 @@ export const redraw = onceAFrame(draw);
 /** The same without waiting for the next displayed frame, and until it is done. */
 export function drawNow() {
   draw();
-  painter.gl?.readPixels(0, 0, 1, 1, painter.gl.RGBA, painter.gl.UNSIGNED_BYTE, new Uint8Array(4));
+  painter.finish();
 }
 
 // The poses as they are drawn, for the pad.
@@ -111,9 +110,7 @@ async function drawThumbnails() {
   frames.forEach((frame, pose) => {
     const shown = frame.layers.filter((layer) => layer.opacity > 0).flatMap((layer) => layer.rings);
     if (shown.length === 0 || frame.layers.length !== painter.layers.length || side < 16) return;
-    const boxes = shown.map(extent);
-    const low = [0, 1].map((d) => Math.min(...boxes.map(([from]) => from[d])));
-    const high = [0, 1].map((d) => Math.max(...boxes.map(([, to]) => to[d])));
+    const [low, high] = extentOfAll(shown);
     const scale = (side - 4) / Math.max(high[0] - low[0], high[1] - low[1]);
     painter.begin({ scale, x: 2 - low[0] * scale, y: 2 - low[1] * scale });
     painter.frame(frame, { inLight: store.scene.texture?.blending === 'linear' });
@@ -150,8 +147,6 @@ async function load() {
 canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
 canvas.addEventListener('webglcontextrestored', () => {
   painter.build();
-  painter.layers = [];
-  painter.pictures = [];
   pictures = null;
   load();
 });

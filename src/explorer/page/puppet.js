@@ -2,28 +2,27 @@
 // that the blended outline covers of each pixel. Where triangles overlap, the last one is seen: they are drawn from the last to the
 // first, each pixel once (by the depth buffer).
 import { coveredAreas } from './areas.js';
-import { context, pictureTexture, program, texture } from './gl.js';
+import { pictureTexture, program, texture } from './gl.js';
 import { MESH, textured } from './shaders.js';
+import { shownTextures, texelsOf, texturePlaces, windowOf } from './shown.js';
 import { attribute, SkirtedMesh } from './skirted.js';
 
-/** A texture that counts for less is not drawn. */
-const FAINTEST = 1e-3;
 /** Textures that are drawn at once; of more, the heaviest. WebGL2 has 15 varyings for sure, and 16 attributes and pictures, of which
  * one holds places and one areas. */
 const MOST_TEXTURES = 15;
-/** Texels that a pixel may span before a smaller picture is used, as in `render::texture`. */
-const MOST_TEXELS_A_PIXEL = 2.28;
 
 export class PuppetPainter {
-  constructor(canvas) {
+  /** `gl`: the canvas's own context. */
+  constructor(canvas, gl) {
     this.canvas = canvas;
-    this.gl = context(canvas);
-    this.layers = [];
-    this.pictures = [];
-    if (this.gl) this.build();
+    this.gl = gl;
+    this.build();
   }
 
+  /** Everything anew, as when the context was lost. */
   build() {
+    this.layers = [];
+    this.pictures = [];
     this.programs = {};
     this.mesh = program(this.gl, ...MESH);
     this.corners = { array: this.gl.createVertexArray(), buffer: this.gl.createBuffer() };
@@ -32,7 +31,6 @@ export class PuppetPainter {
 
   /** Takes `api/puppet`, the meshes and, per layer and texture, a bitmap; without bitmaps the pictures that are there stay. */
   load(puppet, meshes, bitmaps) {
-    if (!this.gl) return;
     this.layers.forEach((layer) => layer.mesh.free());
     if (bitmaps) {
       this.pictures.flat().forEach((picture) => this.gl.deleteTexture(picture));
@@ -41,17 +39,12 @@ export class PuppetPainter {
     this.layers = puppet.layers.map((layer, k) => this.layer(layer, meshes[k], this.pictures[k]));
   }
 
-  layer(puppet, mesh, pictures) {
-    const coordinates = puppet.textures.map(({ pose, colour: { width, height, origin, scale } }) =>
-      mesh.poses[pose].map((value, k) => ((value - origin[k & 1]) * scale) / (k & 1 ? height : width)));
+  layer({ textures }, mesh, pictures) {
     return {
-      textures: puppet.textures.map(({ pose, colour: { scale } }, number) => ({
-        number,
-        picture: pictures[number],
-        texels: areaOf(mesh.triangles, mesh.poses[pose]) * scale * scale,
-      })),
+      pictures,
+      texels: textures.map((of) => texelsOf(of, mesh)),
       triangles: mesh.triangles,
-      mesh: new SkirtedMesh(this.gl, mesh, coordinates),
+      mesh: new SkirtedMesh(this.gl, mesh, textures.map((of) => texturePlaces(of, mesh))),
     };
   }
 
@@ -74,7 +67,7 @@ export class PuppetPainter {
       const shape = frame.layers[k];
       const layer = this.layers[k];
       if (!layer || shape.opacity <= 0) continue;
-      const window = this.window(shape.rings);
+      const window = windowOf(shape.rings, this.view, this.canvas);
       if (!window) continue;
       this.fillAreas(shape.rings, window);
       gl.enable(gl.SCISSOR_TEST);
@@ -83,36 +76,10 @@ export class PuppetPainter {
     }
   }
 
-  /** The pixels that some rings can touch: left, top, right, bottom. */
-  window(rings) {
-    let [left, top, right, bottom] = [Infinity, Infinity, -Infinity, -Infinity];
-    for (const ring of rings) {
-      for (let k = 0; k < ring.length; k += 2) {
-        left = Math.min(left, ring[k]);
-        right = Math.max(right, ring[k]);
-        top = Math.min(top, ring[k + 1]);
-        bottom = Math.max(bottom, ring[k + 1]);
-      }
-    }
-    const [scale, x, y] = this.view;
-    const { width, height } = this.canvas;
-    const window = [
-      Math.max(0, Math.floor(left * scale + x) - 1), Math.max(0, Math.floor(top * scale + y) - 1),
-      Math.min(width, Math.ceil(right * scale + x) + 1), Math.min(height, Math.ceil(bottom * scale + y) + 1),
-    ];
-    return window[0] < window[2] && window[1] < window[3] ? window : null;
-  }
-
   drawLayer(layer, shape, opacity, tint, inLight) {
     const { gl, canvas } = this;
-    const total = shape.textureWeights.reduce((sum, weight) => sum + Math.max(weight, 0), 0);
-    const shown = layer.textures
-      .map((of, k) => ({ ...of, weight: shape.textureWeights[k] }))
-      .filter(({ weight }) => weight > FAINTEST * total)
-      .sort((a, b) => b.weight - a.weight)
-      .slice(0, MOST_TEXTURES);
+    const shown = shownTextures(layer, shape, this.view[0], MOST_TEXTURES);
     if (shown.length === 0) return;
-    const whole = shown.reduce((sum, { weight }) => sum + weight, 0);
     const { made, at } = (this.programs[[shown.length, inLight]] ??= program(gl, ...textured(shown.length, inLight)));
     gl.useProgram(made);
     bound(gl, 0, this.areas.texture);
@@ -122,13 +89,10 @@ export class PuppetPainter {
     gl.uniform1f(at.height, canvas.height);
     gl.uniform1f(at.opacity, opacity);
     gl.uniform4fv(at.tint, tint);
-    gl.uniform1fv(at['weights[0]'], shown.map(({ weight }) => weight / whole));
-    // One level for all of a texture, as the command does it.
-    const seen = Math.max(areaOf(layer.triangles, shape.positions) * this.view[0] ** 2, 1e-6);
-    const level = (texels) => Math.max(0, Math.ceil(Math.log2(Math.sqrt(texels / seen) / MOST_TEXELS_A_PIXEL)));
-    gl.uniform1fv(at['levels[0]'], shown.map(({ texels }) => level(texels)));
-    shown.forEach(({ picture }, k) => {
-      bound(gl, 1 + k, picture);
+    gl.uniform1fv(at['weights[0]'], shown.map(({ weight }) => weight));
+    gl.uniform1fv(at['levels[0]'], shown.map(({ level }) => level));
+    shown.forEach(({ number }, k) => {
+      bound(gl, 1 + k, layer.pictures[number]);
       gl.uniform1i(at[`picture${k}`], 1 + k);
     });
     layer.mesh.bind(shape.positions, shown.map(({ number }) => number));
@@ -152,6 +116,11 @@ export class PuppetPainter {
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
     gl.texSubImage2D(gl.TEXTURE_2D, 0, window[0], window[1], window[2] - window[0], window[3] - window[1], gl.RED, gl.UNSIGNED_BYTE, coveredAreas(rings, this.view, window));
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
+  }
+
+  /** Waits until what was drawn is done. */
+  finish() {
+    this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
   /** The mesh of a frame, over it. Colours are premultiplied. */
@@ -183,14 +152,4 @@ export class PuppetPainter {
 function bound(gl, unit, what) {
   gl.activeTexture(gl.TEXTURE0 + unit);
   gl.bindTexture(gl.TEXTURE_2D, what);
-}
-
-/** The area of the triangles that are not inverted. */
-function areaOf(triangles, points) {
-  let doubled = 0;
-  for (let t = 0; t < triangles.length; t += 3) {
-    const [a, b, c] = [2 * triangles[t], 2 * triangles[t + 1], 2 * triangles[t + 2]];
-    doubled += Math.max(0, (points[b] - points[a]) * (points[c + 1] - points[a + 1]) - (points[b + 1] - points[a + 1]) * (points[c] - points[a]));
-  }
-  return 0.5 * doubled;
 }

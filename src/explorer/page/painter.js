@@ -1,0 +1,25 @@
+// Who draws frames: the graphics card, or, where there is none, the processor.
+import { PuppetPainter } from './puppet.js';
+import { ScannedPainter } from './scanned.js';
+
+/** What draws WebGL without a card calls itself. */
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|lavapipe|basic render/i;
+
+/** Whether WebGL2 is there and drawn by a card. Asked of a canvas of its own: one that has had a context gets no other. */
+function hasCard() {
+  const gl = document.createElement('canvas').getContext('webgl2', { failIfMajorPerformanceCaveat: true });
+  if (!gl) return false;
+  const info = gl.getExtension('WEBGL_debug_renderer_info');
+  const name = gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return !SOFTWARE.test(name);
+}
+
+/** The painter of a canvas, which says in `dataset.painter` which it is: `card` or `processor`. `?painter=` in the page's address asks for one. */
+export function painterOf(canvas) {
+  const asked = new URLSearchParams(location.search).get('painter');
+  const wanted = asked ?? (hasCard() ? 'card' : 'processor');
+  const gl = wanted === 'card' ? canvas.getContext('webgl2', { alpha: true, antialias: false, depth: true, stencil: false, premultipliedAlpha: true }) : null;
+  canvas.dataset.painter = gl ? 'card' : 'processor';
+  return gl ? new PuppetPainter(canvas, gl) : new ScannedPainter(canvas, canvas.getContext('2d', { willReadFrequently: true }));
+}
