@@ -15,6 +15,46 @@ async function undone({ page, scene, check, saved }, bytes, what) {
   check(Buffer.compare(readFileSync(scene), bytes) === 0, `undo restores the bytes after ${what}`);
 }
 
+/** A landmark by keys alone: a cross is moved to a free place inside a drawing, a landmark put there, and moved on another drawing. */
+export async function landmarkByKeys(tools) {
+  const { page, scene, check, edited } = tools;
+  const bytes = readFileSync(scene);
+  await page.locator('#probe').focus();
+  await page.keyboard.press('v');
+  await page.waitForSelector('#matches .cell .outline path', { state: 'attached' });
+  const { poses } = await api(page, 'correspondences');
+  const cells = poses.map((pose, k) => [pose, page.locator('#matches .cell').nth(k)]).filter(([pose]) => pose.drawn);
+  const cross = (cell) => cell.locator('[role="status"]').textContent().then((text) => text.split(', ').map(Number));
+  const [[first, cell], [second, other]] = cells;
+  await cell.locator('.drawing').focus();
+  const isFree = () => cell.locator('.drawing').evaluate((svg) => {
+    const { x, y, width, height } = svg.querySelector('.cross').getBBox();
+    const at = Object.assign(svg.createSVGPoint(), { x: x + width / 2, y: y + height / 2 });
+    const near = [...svg.querySelectorAll('.mark, .line, .link')].some((mark) => {
+      const box = mark.getBBox();
+      return at.x > box.x - 4 && at.x < box.x + box.width + 4 && at.y > box.y - 4 && at.y < box.y + box.height + 4;
+    });
+    return !near && svg.querySelector('.outline path').isPointInFill(at);
+  });
+  for (let k = 0; k < 60 && !(await isFree()); k++) await page.keyboard.press(k % 7 === 6 ? 'ArrowUp' : Math.floor(k / 7) % 2 ? 'ArrowLeft' : 'ArrowRight');
+  const wanted = await cross(cell);
+  await page.keyboard.press(' ');
+  await page.waitForSelector('#add-landmark', { state: 'visible' });
+  await other.locator('.drawing').focus();
+  const carried = await cross(other);
+  await page.keyboard.press('Shift+ArrowRight');
+  await page.keyboard.press(' ');
+  const moved = await cross(other);
+  check(moved[0] > carried[0] && moved[1] === carried[1], 'an arrow key moves the cross on a drawing');
+  await page.keyboard.press('Enter');
+  await edited(page, 'add a landmark');
+  const { at } = (await api(page, 'scene')).landmarks.at(-1);
+  const isAt = (place, [x, y]) => Math.abs(place[0] - x) < 0.06 && Math.abs(place[1] - y) < 0.06;
+  check(isAt(at[first.name], wanted) && isAt(at[second.name], moved), 'a landmark is added and moved by keys alone');
+  await undone(tools, bytes, 'a landmark by keys');
+  await page.click('[data-value="picture"]');
+}
+
 /** A line is drawn on one drawing, lands on all, is a chain of edges of the mesh, and is bent by one of its points. */
 export async function lines(tools) {
   const { page, scene, check, centre, drag, edited } = tools;

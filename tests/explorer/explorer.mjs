@@ -13,7 +13,7 @@ import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
 import { createRequire } from 'node:module';
 import { request } from 'node:http';
 import { basename, dirname, join, resolve } from 'node:path';
-import { conflict, keysInTime, lines, pseudoPoses } from './edits.mjs';
+import { conflict, keysInTime, landmarkByKeys, lines, pseudoPoses } from './edits.mjs';
 import { decodePng, difference } from './picture.mjs';
 
 const players = process.env.PLAYERS ?? '.';
@@ -86,6 +86,7 @@ async function proofs() {
   if (plane) await movedPose(page, answer);
   await landmark(page);
   const tools = { page, scene, check, centre, drag, drawn, edited, saved, padPoint };
+  await landmarkByKeys(tools);
   await lines(tools);
   if (plane) await gesture(page, answer);
   await keysInTime(tools);

@@ -31,6 +31,7 @@ const KEYS = [
   [['+', '−'], 'Zoom', (e) => ['+', '=', '-'].includes(e.key), (e) => zoomBy(e.key === '-' ? 0.8 : 1.25)],
   [['C'], 'Copy as command', (e) => e.key === 'c', () => copyCommand()],
   [['E'], 'Export', (e) => e.key === 'e', () => openExport()],
+  [['←', '↑', '↓', '→', 'Space'], 'On a drawing of the matches: move a cross; put a landmark or the next point of a line there', null],
   [['Enter'], 'End the line; add the new landmark', null],
   [['Ctrl', 'Z'], 'Undo; with Shift, redo', null],
   [['?'], 'This list', (e) => e.key === '?', () => openKeys()],

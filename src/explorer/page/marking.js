@@ -21,7 +21,7 @@ export function press(event, cell) {
   event.preventDefault();
   const open = match.fresh?.open;
   if (open) {
-    if (open === cell.pose.name) extend(cell, event);
+    if (open === cell.pose.name) extend(cell, placeUnder(event, cell));
     return;
   }
   const group = event.target.closest('.mark, .line');
@@ -29,6 +29,26 @@ export function press(event, cell) {
   if (group) return dragged(event, cell, group.dataset.landmark || null, (next) => placeUnder(next, cell));
   if (store.view.mark === 'line') begin(cell, placeUnder(event, cell));
   else propose(cell, placeUnder(event, cell));
+}
+
+/** The same from the keyboard, at a place: the next point of a line, the place of a new landmark on this pose, or a new one. */
+export function put(cell, at) {
+  const { fresh } = match;
+  const pose = cell.pose.name;
+  if (fresh?.open) {
+    if (fresh.open === pose) extend(cell, at);
+  } else if (fresh && !fresh.path) {
+    fresh.at[pose] = at;
+    emit('held');
+  } else if (store.view.mark === 'line') begin(cell, at);
+  else propose(cell, at);
+}
+
+/** The end of a line that is being drawn on this pose follows. */
+export function trailTo(cell, at) {
+  const points = match.fresh?.open === cell.pose.name && match.fresh.at[cell.pose.name];
+  if (points) points[points.length - 1] = at;
+  return Boolean(points);
 }
 
 /** A second press at once: takes a point out of a line, or ends one. True if it meant something here. */
@@ -141,19 +161,16 @@ function begin(cell, at) {
   match.chosen = null;
   match.fresh = { path: true, at: { [cell.pose.name]: [at, at] }, open: cell.pose.name, cell };
   const trail = (event) => {
-    const points = match.fresh?.open === cell.pose.name && match.fresh.at[cell.pose.name];
-    if (!points) return cell.drawing.removeEventListener('pointermove', trail);
-    points[points.length - 1] = placeUnder(event, cell);
-    emit('held');
+    if (trailTo(cell, placeUnder(event, cell))) emit('held');
+    else cell.drawing.removeEventListener('pointermove', trail);
   };
   cell.drawing.addEventListener('pointermove', trail);
   emit('marks');
 }
 
 /** The next point; the last one follows the pointer. */
-function extend(cell, event) {
+function extend(cell, at) {
   const points = match.fresh.at[cell.pose.name];
-  const at = placeUnder(event, cell);
   const before = points[points.length - 2];
   if (before[0] !== at[0] || before[1] !== at[1]) points.splice(points.length - 1, 1, at, at);
   emit('held');

@@ -32,7 +32,11 @@ export function drawCell(cell, px) {
     return links.flatMap((link, k) => (link.landmark ? [] : numbered(link.at[index], k, link.hue, px, roomy)));
   });
   drawMarks(cell, px);
+  fill(layers.cross, [cell.cross, px], () => (cell.cross ? [cross(cell.cross, px)] : []));
 }
+
+/** Where the keyboard is. */
+const cross = ([x, y], px) => s('path', { d: [[-1, 0], [1, 0], [0, -1], [0, 1]].map(([dx, dy]) => `M${x + 3 * dx * px} ${y + 3 * dy * px}L${x + 16 * dx * px} ${y + 16 * dy * px}`).join(''), 'stroke-width': 2 * px });
 
 function perimeter(flat) {
   let sum = 0;

@@ -1,5 +1,6 @@
 // Correspondences: the outlines of all poses side by side, what matches what, and the landmarks that say so.
 import { getJson } from './api.js';
+import { attachCross } from './cross.js';
 import { byId, clamp, h, onceAFrame, s, set } from './dom.js';
 import { icon } from './icons.js';
 import { drawTray, press, pressTwice, tray } from './marking.js';
@@ -46,12 +47,13 @@ function build() {
   built = key;
   cells = match.data.poses.map((pose, index) => {
     const box = bounds(pose);
-    const drawing = s('svg', { class: 'drawing', role: 'group', 'aria-label': `Drawing of ${pose.name}`, preserveAspectRatio: 'xMidYMid meet' });
-    const layers = Object.fromEntries(['picture', 'mesh', 'outline', 'links', 'marks'].map((name) => [name, s('g', { class: name })]));
+    const drawing = s('svg', { class: 'drawing', 'aria-label': `Drawing of ${pose.name}: arrow keys move a cross, Space puts a landmark there`, preserveAspectRatio: 'xMidYMid meet' });
+    const layers = Object.fromEntries(['picture', 'mesh', 'outline', 'links', 'marks', 'cross'].map((name) => [name, s('g', { class: name })]));
     drawing.append(...Object.values(layers));
     const warning = h('span', { class: 'warning' });
-    const element = h('figure', { class: `cell${pose.drawn ? '' : ' copy'}` }, h('figcaption', {}, h('b', {}, pose.name), index === match.data.reference ? h('span', { class: 'faint small' }, 'reference') : null, pose.drawn ? null : h('span', { class: 'faint small' }, 'copy'), h('span', { class: 'grow' }), warning), drawing);
-    const cell = { pose, index, box, drawing, layers, warning, element };
+    const where = h('span', { class: 'faint small', role: 'status' });
+    const element = h('figure', { class: `cell${pose.drawn ? '' : ' copy'}` }, h('figcaption', {}, h('b', {}, pose.name), index === match.data.reference ? h('span', { class: 'faint small' }, 'reference') : null, pose.drawn ? null : h('span', { class: 'faint small' }, 'copy'), where, h('span', { class: 'grow' }), warning), drawing);
+    const cell = { pose, index, box, drawing, layers, warning, where, element, cross: null };
     // A copy has no drawing of its own: what it would show is bent otherwise.
     if (pose.picture && pose.drawn) {
       const { origin, scale, width, height } = pose.picture;
@@ -60,6 +62,7 @@ function build() {
     }
     cell.view = box;
     set(drawing, { viewBox: box.join(' ') });
+    attachCross(cell, unit);
     drawing.addEventListener('wheel', (event) => zoomCell(event, cell), { passive: false });
     drawing.addEventListener('dblclick', (event) => pressTwice(event, cell) || showBox(cell, cell.box));
     drawing.addEventListener('pointerdown', (event) => press(event, cell));

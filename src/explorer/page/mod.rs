@@ -31,6 +31,7 @@ const MODULES: &[PageFile] = modules![
     "bench.js",
     "connections.js",
     "controls.js",
+    "cross.js",
     "curves.js",
     "dom.js",
     "export.js",
