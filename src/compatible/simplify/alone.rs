@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::collapse::{Collapser, OriginalRing, PoseOriginal};
+use super::collapse::Collapser;
+use super::original::{OriginalRing, PoseOriginal};
 use super::tuples::{Pin, TupleRing};
 use super::{SimplifyError, SimplifyOptions};
 use crate::outline::{Outline, Ring};

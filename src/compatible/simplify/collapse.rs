@@ -1,17 +1,7 @@
 //! Greedy collapse of edges of tuple rings, in all poses at once, that never loses a point of any outline.
 //!
-//! For the edge `b c` with outer neighbours `a` and `d`, each pose has its own way to merge `b` and `c` into one point
-//! without losing area:
-//! - `b` is reflex or straight: `b` goes, the new vertex is `c`;
-//! - `c` is reflex or straight: `c` goes, the new vertex is `b`;
-//! - both are convex and turn by less than 180 degrees together: the new vertex is the apex where the lines `a b` and
-//!   `d c` meet.
-//!
-//! Where two ways are open, the pose takes the one that deviates less from its outline. A tuple can be removed when
-//! every pose has a way. Holes need no rule of their own: they run the other way round, so that the shape is on the
-//! left of every edge, and "reflex" means a right turn for all rings alike.
-//!
-//! A landmark stays where it is: of an edge that ends in one only the other end may go.
+//! A tuple can be removed when every pose has a way to merge the ends of the edge ([`EdgeInPose`]). The cheapest edge goes first, where no
+//! pose's rings would touch.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -19,86 +9,13 @@ use std::collections::BinaryHeap;
 use rayon::prelude::*;
 
 use super::edge_grid::EdgeGrid;
+use super::merging::{EdgeInPose, Merge};
+use super::original::PoseOriginal;
 use super::tuples::{Tuple, TupleRing};
 use crate::math::{Point, point, predicate, wrapped};
-use crate::outline::{ArcLength, Ring};
-
-/// A vertex counts as straight if it is convex by less than this, as a fraction of the pose's size: points that
-/// were interpolated on an edge lie off it by rounding, a few 1e-16.
-const STRAIGHT: f64 = 1e-14;
 
 /// The share of its area that a hole keeps at least. One that is no larger than the tolerance would become a line.
 const LEAST_HOLE: f64 = 0.01;
-
-/// The full-resolution ring that a simplified ring must enclose and stay close to.
-#[derive(Debug)]
-pub(super) struct OriginalRing {
-    points: Vec<Point>,
-    parameters: Vec<f64>,
-    longest_edge: f64,
-    doubled_area: f64,
-}
-
-impl OriginalRing {
-    pub(super) fn new(ring: &Ring) -> Self {
-        let parameters = ArcLength::new(ring).vertex_parameters().to_vec();
-        Self {
-            points: ring.points().to_vec(),
-            parameters,
-            longest_edge: ring.edges().map(|(a, b)| (b - a).norm()).fold(0.0, f64::max),
-            doubled_area: 2.0 * ring.signed_area(),
-        }
-    }
-
-    pub(super) fn points(&self) -> &[Point] {
-        &self.points
-    }
-
-    pub(super) fn longest_edge(&self) -> f64 {
-        self.longest_edge
-    }
-
-    /// The points whose parameters lie strictly between `start` and `end`, cyclically.
-    pub(super) fn between(&self, start: f64, end: f64) -> impl Iterator<Item = (f64, Point)> + '_ {
-        let count = self.points.len();
-        let first = self.parameters.partition_point(|&t| t <= start);
-        let last = self.parameters.partition_point(|&t| t < end);
-        let steps = if end >= start {
-            last.saturating_sub(first)
-        } else {
-            count - first + last
-        };
-        (first..first + steps).map(move |k| (self.parameters[k % count], self.points[k % count]))
-    }
-
-    /// How far the points between two parameters lie from a segment, at most; gives up beyond `limit`.
-    fn deviation(&self, (start, end): (f64, f64), from: Point, to: Point, limit: f64) -> f64 {
-        let mut worst = 0.0_f64;
-        for (_, p) in self.between(start, end) {
-            worst = worst.max(point::nearest_on_segment(p, from, to).1);
-            if worst > limit {
-                break;
-            }
-        }
-        worst
-    }
-}
-
-/// One pose as the collapser needs it.
-#[derive(Debug)]
-pub(super) struct PoseOriginal {
-    pub(super) rings: Vec<OriginalRing>,
-    /// The length that deviations are relative to.
-    pub(super) size: f64,
-}
-
-/// A way to merge `b` and `c` in one pose.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Merge {
-    point: Point,
-    parameter: f64,
-    deviation: f64,
-}
 
 #[derive(Debug, PartialEq)]
 struct Queued {
@@ -289,7 +206,7 @@ impl<'a> Collapser<'a> {
         let mut merges = Vec::with_capacity(self.originals.len());
         let (mut worst, mut sum) = (0.0_f64, 0.0);
         for pose in 0..self.originals.len() {
-            let merge = self.merge(pose, b)?;
+            let merge = self.edge(pose, b).best_merge(self.tolerance)?;
             let relative = merge.deviation / self.originals[pose].size;
             worst = worst.max(relative * relative);
             sum += relative * relative;
@@ -300,78 +217,17 @@ impl<'a> Collapser<'a> {
         Some(((worst + SUM_SHARE * sum) * weight, merges))
     }
 
-    /// The best way to merge `b` and its successor in one pose.
-    fn merge(&self, pose: usize, b: usize) -> Option<Merge> {
+    /// The edge from `b` to its successor in one pose.
+    fn edge(&self, pose: usize, b: usize) -> EdgeInPose<'_> {
+        let (a, c) = (self.previous[b], self.next[b]);
+        let around = [a, b, c, self.next[c]];
         let original = &self.originals[pose];
-        let ring = &original.rings[self.ring_of[b]];
-        let (a, c) = (self.previous[b], self.next[b]);
-        let d = self.next[c];
-        let [pa, pb, pc, pd] = [a, b, c, d].map(|v| self.point(pose, v));
-        let [ta, tb, tc, td] = [a, b, c, d].map(|v| self.tuples[v].parameters[pose]);
-        let limit = self.tolerance * original.size;
-        let straight = STRAIGHT * original.size;
-        let can_drop = |before: Point, vertex: Point, after: Point| {
-            !predicate::is_positive(before, vertex, after)
-                || point::cross(vertex - before, after - before) <= straight * (after - before).norm()
-        };
-        let mut best: Option<Merge> = None;
-        let mut offer = |merge: Merge| {
-            if merge.deviation <= limit && best.is_none_or(|b| merge.deviation < b.deviation) {
-                best = Some(merge);
-            }
-        };
-        let (keeps_b, keeps_c) = (self.is_landmark(b), self.is_landmark(c));
-        if !keeps_b && can_drop(pa, pb, pc) {
-            offer(Merge {
-                point: pc,
-                parameter: tc,
-                deviation: ring.deviation((ta, tc), pa, pc, limit),
-            });
-        }
-        if !keeps_c && can_drop(pb, pc, pd) {
-            offer(Merge {
-                point: pb,
-                parameter: tb,
-                deviation: ring.deviation((tb, td), pb, pd, limit),
-            });
-        }
-        let both_convex = predicate::is_positive(pa, pb, pc) && predicate::is_positive(pb, pc, pd);
-        if both_convex && !keeps_b && !keeps_c {
-            let (into, out) = (pb - pa, pd - pc);
-            let denominator = point::cross(into, out);
-            if denominator > 0.0 {
-                let apex = pb + into * (point::cross(pc - pb, out) / denominator);
-                let distance = point::nearest_on_segment(apex, pb, pc).1;
-                if distance <= 2.0 * limit {
-                    offer(self.apex_merge(pose, b, apex, limit));
-                }
-            }
-        }
-        best
-    }
-
-    /// The merge of `b` and its successor at `apex`: it stands for the outline point nearest to it, and deviates by
-    /// that point's distance or by what the two new edges leave.
-    fn apex_merge(&self, pose: usize, b: usize, apex: Point, limit: f64) -> Merge {
-        let ring = &self.originals[pose].rings[self.ring_of[b]];
-        let (a, c) = (self.previous[b], self.next[b]);
-        let d = self.next[c];
-        let parameter_of = |v: usize| self.tuples[v].parameters[pose];
-        let (tb, tc) = (parameter_of(b), parameter_of(c));
-        // A point of the chain, or failing that the middle of its parameters.
-        let middle = wrapped(tb + 0.5 * wrapped(tc - tb));
-        let nearest = ring
-            .between(tb, tc)
-            .map(|(t, p)| ((p - apex).norm(), t))
-            .min_by(|x, y| x.0.total_cmp(&y.0));
-        let to_edge = point::nearest_on_segment(apex, self.point(pose, b), self.point(pose, c)).1;
-        let (distance, parameter) = nearest.map_or((to_edge, middle), |(distance, t)| (distance, t));
-        let before = ring.deviation((parameter_of(a), parameter), self.point(pose, a), apex, limit);
-        let after = ring.deviation((parameter, parameter_of(d)), apex, self.point(pose, d), limit);
-        Merge {
-            point: apex,
-            parameter,
-            deviation: distance.max(before).max(after),
+        EdgeInPose {
+            ring: &original.rings[self.ring_of[b]],
+            size: original.size,
+            points: around.map(|v| self.point(pose, v)),
+            parameters: around.map(|v| self.tuples[v].parameters[pose]),
+            keeps: [b, c].map(|v| self.is_landmark(v)),
         }
     }
 
@@ -404,7 +260,7 @@ impl<'a> Collapser<'a> {
             }
         }
         // Holes run the other way round: their areas are negative.
-        let least = LEAST_HOLE * self.originals[pose].rings[ring].doubled_area;
+        let least = LEAST_HOLE * self.originals[pose].rings[ring].doubled_area();
         if ring > 0 && self.areas[pose][ring] + gained_area([pa, pb, pc, pd], apex) > least {
             return false;
         }

@@ -7,7 +7,7 @@
 //! 1. Each outline alone is simplified to a fraction of the tolerance, by the same collapse as below with one pose.
 //! 2. Every vertex left on any pose becomes a tuple of corresponding vertices ([`tuples`]).
 //! 3. Edges of tuples collapse, cheapest first, while every pose stays simple, keeps its outline inside, and deviates
-//!    by no more than the tolerance from it ([`collapse`]).
+//!    by no more than the tolerance from it ([`collapse`], [`merging`]).
 //! 4. The vertices are pulled inwards until they touch the outline ([`tighten`]).
 //! 5. Where the triangulation then needs Steiner points, the collapses next to one are tried in another order, as often as
 //!    the caller asks ([`Simplification::vary`]).
@@ -28,6 +28,8 @@
 mod alone;
 mod collapse;
 mod edge_grid;
+mod merging;
+mod original;
 mod tighten;
 mod tuples;
 
@@ -44,7 +46,8 @@ use crate::math::{Point, point};
 use crate::outline::{Outline, OutlineError, Ring, RingError};
 use alone::PoseAlone;
 pub use alone::SimplifiedAlone;
-use collapse::{Collapser, PoseOriginal};
+use collapse::Collapser;
+use original::PoseOriginal;
 use tuples::{Pin, TupleRing};
 
 /// What the simplification may do.

@@ -4,7 +4,7 @@
 //! to lie outside and the polygon stays simple. On that line the vertex itself never enters the outline, so an outline
 //! edge can leave the polygon only with one of its ends: testing points is enough.
 
-use super::collapse::OriginalRing;
+use super::original::OriginalRing;
 use crate::math::{Point, point, predicate};
 
 /// Sweeps over the vertices. The second still gains, the third hardly.
