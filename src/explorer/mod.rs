@@ -2,7 +2,7 @@
 //!
 //! The page ([`page`]) is plain HTML, CSS and JavaScript in the binary. It asks this server for everything that is computed, and
 //! tells it every edit; the server owns the scene's text, its undo and the file. Files here: [`http`] (the protocol), [`security`]
-//! (who is answered), [`server`] (connections), [`socket`] (those that stay open), [`routes`], [`session`] (the state), [`document`] (the scene's text, undo, saving),
+//! (who is answered), [`server`] (connections), [`socket`] (those that stay open), [`routes`], [`session`] and [`state`] (the state), [`document`] (the scene's text, undo, saving),
 //! [`edit`] (edits of the text), [`model`] (what is computed of a scene), [`worker`] (heavy work, and the look at the disk), and
 //! one file a group of answers.
 //!
@@ -272,6 +272,7 @@ mod security;
 mod server;
 mod session;
 mod socket;
+mod state;
 mod thinning;
 mod wire;
 mod worker;

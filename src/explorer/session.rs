@@ -1,4 +1,4 @@
-//! The state of an explored scene.
+//! An explored scene: what is shown of it, what is edited, what is being computed.
 //!
 //! What is shown is one immutable [`Shown`]; requests take it and never wait for work. Edits change the [`Document`] at once and tell
 //! the worker which scene is wanted; it shows the newest as soon as it can. Weights follow a pose that is moved at once.
@@ -11,8 +11,8 @@ use std::time::{Duration, Instant};
 
 use inbetween::pipeline::{DrawingFiles, Workbench};
 use inbetween::scene::{Layout, Scene};
-use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde::Deserialize;
+use serde_json::Value;
 
 use super::document::{Document, Outside};
 use super::draggers::Draggers;
@@ -22,6 +22,7 @@ use super::model::Shown;
 use super::picture_cache::PictureCache;
 use super::problem::{Problem, Refusal};
 use super::reweighting::{Only, reweighted, with_places_of};
+use super::state::{FileState, State, Wanted};
 
 /// The state of an explored scene.
 #[derive(Debug)]
@@ -39,46 +40,6 @@ pub(crate) struct Session {
     pub(super) draggers: Draggers,
     /// The export.
     pub(super) jobs: Jobs,
-}
-
-#[derive(Debug, Default)]
-struct State {
-    seq: u64,
-    /// Counts edits.
-    generation: u64,
-    /// The last edit whose weights were shown at once.
-    reweighted: u64,
-    shown: Arc<Shown>,
-    /// What the worker has to do.
-    wanted: Option<Wanted>,
-    working: bool,
-    /// The drawings' files have changed since they were read.
-    is_stale: bool,
-    mapping_ms: Option<f64>,
-    file: FileState,
-    job: Value,
-}
-
-/// What the page is told of the document.
-#[derive(Debug, Default, PartialEq, Serialize)]
-struct FileState {
-    dragging: bool,
-    saved: bool,
-    conflict: bool,
-    save_error: Option<String>,
-    undo: Option<String>,
-    redo: Option<String>,
-}
-
-/// A scene to be computed.
-#[derive(Debug, Clone)]
-pub(crate) struct Wanted {
-    pub(crate) scene: Arc<Scene>,
-    pub(crate) files: DrawingFiles,
-    /// Whether it is in the middle of a drag.
-    pub(crate) is_dragged: bool,
-    since: Instant,
-    generation: u64,
 }
 
 /// The body of `POST api/edit`.
@@ -159,7 +120,7 @@ impl Session {
                     revisions,
                     &before,
                 ));
-                state.file = file_state(document);
+                state.file = FileState::of(document);
                 self.touch(&mut state);
             }
         }
@@ -215,7 +176,7 @@ impl Session {
             before.problems.clone()
         };
         state.shown = Arc::new(Shown::new(Some(scene), bench, problems, revisions, &before));
-        state.file = file_state(document);
+        state.file = FileState::of(document);
         self.touch(&mut state);
     }
 
@@ -270,7 +231,7 @@ impl Session {
     pub(crate) fn save(&self) -> Value {
         let mut document = self.lock_document();
         document.save();
-        self.lock().file = file_state(&document);
+        self.lock().file = FileState::of(&document);
         self.touch(&mut self.lock());
         self.state_json()
     }
@@ -308,7 +269,7 @@ impl Session {
             Outside::Same => {}
             Outside::Taken => self.read_document(&document),
             Outside::Conflict => {
-                self.lock().file = file_state(&document);
+                self.lock().file = FileState::of(&document);
                 self.touch(&mut self.lock());
             }
         }
@@ -338,7 +299,7 @@ impl Session {
 
     /// `GET api/state`.
     pub(crate) fn state_json(&self) -> Value {
-        state_json(&self.lock())
+        self.lock().json()
     }
 
     /// The state when its number is not `after`, or after `patience`.
@@ -349,7 +310,7 @@ impl Session {
             .changed
             .wait_timeout_while(state, patience, is_old)
             .unwrap_or_else(PoisonError::into_inner);
-        state_json(&state)
+        state.json()
     }
 
     /// Tells the page how the export is getting on.
@@ -422,31 +383,4 @@ impl Session {
         state.shown = Arc::new(Shown::new(shown.0, shown.1, shown.2, revisions, &before));
         self.touch(&mut state);
     }
-}
-
-fn file_state(document: &Document) -> FileState {
-    let [undo, redo] = document.labels().map(|label| label.map(str::to_owned));
-    FileState {
-        dragging: document.is_dragging(),
-        saved: document.is_saved(),
-        conflict: document.is_in_conflict(),
-        save_error: document.save_error().map(str::to_owned),
-        undo,
-        redo,
-    }
-}
-
-fn state_json(state: &State) -> Value {
-    let mut answer = json!({
-        "seq": state.seq,
-        "revisions": state.shown.revisions,
-        "working": state.working || state.wanted.is_some(),
-        "problems": state.shown.problems,
-        "timings": {"mapping_ms": state.mapping_ms},
-        "job": state.job,
-    });
-    if let (Value::Object(answer), Ok(Value::Object(file))) = (&mut answer, serde_json::to_value(&state.file)) {
-        answer.extend(file);
-    }
-    answer
 }
