@@ -15,6 +15,8 @@ const NEAR = 9;
 const pad = byId('pad');
 const canvas = h('canvas', { class: 'map', 'aria-hidden': 'true' });
 const lines = s('svg', { class: 'lines', 'aria-hidden': 'true' });
+/** The ends of pseudo-poses, over the poses: near one they would be under its thumbnail. */
+const ends = s('svg', { class: 'lines', role: 'group', 'aria-label': 'Pseudo-poses' });
 const poses = h('div', { class: 'poses' });
 const probe = h('button', { type: 'button', class: 'probe', id: 'probe', 'aria-roledescription': 'two-dimensional slider' });
 const caption = legend();
@@ -208,7 +210,7 @@ function drawPoses() {
 
 function drawLines() {
   const side = view.side;
-  set(lines, { viewBox: `0 0 ${side} ${side}` });
+  [lines, ends].forEach((svg) => set(svg, { viewBox: `0 0 ${side} ${side}` }));
   const polyline = (places, name) => s('polyline', { class: name, points: places.map((p) => view.pixel(p).join(',')).join(' ') });
   const made = [];
   const { low, size } = view.plane;
@@ -226,15 +228,16 @@ function drawLines() {
     made.push(polyline(store.gesture.samples.map(([, ...at]) => at), 'samples'));
     if (store.gesture.path) made.push(polyline(store.gesture.path.map(([, ...at]) => at), 'path fresh'));
   }
-  store.scene.pseudo_poses.forEach((pseudo, index) => made.push(...pseudoPose(pseudo, index)));
-  const held = document.activeElement?.dataset?.pseudo;
+  for (const { from, at } of store.scene.pseudo_poses) made.push(polyline([from, at], 'pseudo'));
   lines.replaceChildren(...made);
-  if (held) lines.querySelector(`[data-pseudo="${held}"]`)?.focus({ preventScroll: true });
+  const held = document.activeElement?.dataset?.pseudo;
+  ends.replaceChildren(...store.scene.pseudo_poses.flatMap(pseudoPose));
+  if (held) ends.querySelector(`[data-pseudo="${held}"]`)?.focus({ preventScroll: true });
 }
 
 function pseudoPose(pseudo, index) {
-  const [from, at] = [view.pixel(pseudo.from), view.pixel(pseudo.at)];
-  const handle = (name, [x, y]) => {
+  return ['from', 'at'].map((name) => {
+    const [x, y] = view.pixel(pseudo[name]);
     const what = name === 'at' ? `Pseudo-pose ${index + 1}: here` : `Pseudo-pose ${index + 1}: shows what was here`;
     const dot = s('circle', { class: `pseudo ${name}`, cx: x, cy: y, r: name === 'at' ? 5 : 3.5, tabindex: '0', role: 'button', 'aria-label': `${what}. Arrow keys move it.`, 'data-pseudo': `${index} ${name}` });
     dot.append(s('title', {}, what));
@@ -244,8 +247,7 @@ function pseudoPose(pseudo, index) {
       if (to) edit([{ op: 'move_pseudo_pose', index, [name]: to }], 'move a pseudo-pose', `arrow ${what}`);
     });
     return dot;
-  };
-  return [s('line', { class: 'pseudo', x1: from[0], y1: from[1], x2: at[0], y2: at[1] }), handle('from', from), handle('at', at)];
+  });
 }
 
 function dragPseudo(event, pseudo, index, name) {
@@ -291,7 +293,7 @@ export function showPath(places) {
 const map = segments('What the plane shows', [['plain', 'Plain'], ['weight', 'Weight'], ['validity', 'Validity']], () => store.view.map, (value) => look({ map: value }));
 const snap = toggle('snap', 'Snap to the grid and to poses (hold Alt for none)', () => store.view.snap, (value) => look({ snap: value }));
 byId('pad-tools').append(h('h2', {}, 'Plane'), h('span', { class: 'grow' }), map, snap);
-pad.append(canvas, lines, poses, probe, caption.element);
+pad.append(canvas, lines, poses, ends, probe, caption.element);
 
 const fields = byId('place');
 let fieldsFor = -1;
