@@ -6,8 +6,12 @@
 /** Connections at a time: one waits for the next state, the others are for what moves at once. */
 const MOST = 6;
 
+/** Connections in a row that could not be opened, after which no more are tried: something between lets none through. */
+const MOST_FAILURES = 3;
+
 const free = [];
 let open = 0;
+let failures = 0;
 
 function connect() {
   open++;
@@ -16,9 +20,15 @@ function connect() {
   address.search = '';
   const connection = new WebSocket(address);
   connection.binaryType = 'arraybuffer';
-  connection.addEventListener('open', () => free.push(connection));
+  let isOpen = false;
+  connection.addEventListener('open', () => {
+    isOpen = true;
+    failures = 0;
+    free.push(connection);
+  });
   connection.addEventListener('close', () => {
     open--;
+    if (!isOpen) failures++;
     if (free.includes(connection)) free.splice(free.indexOf(connection), 1);
   });
 }
@@ -27,7 +37,7 @@ function connect() {
 export async function exchange(method, route, body) {
   const connection = free.pop();
   if (connection) return overConnection(connection, method, route, body);
-  if (open < MOST) connect();
+  if (open < MOST && failures < MOST_FAILURES) connect();
   const headers = body === undefined ? {} : { 'Content-Type': 'application/json' };
   const response = await fetch(`api/${route}`, { method, headers, body: body && JSON.stringify(body) });
   return answered(response.status, new Uint8Array(await response.arrayBuffer()));

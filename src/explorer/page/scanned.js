@@ -32,7 +32,8 @@ export class ScannedPainter {
       return {
         skirt,
         triangles: mesh.triangles,
-        edges: edgesOf(mesh.triangles),
+        /** When they are wanted. */
+        edges: null,
         texels: textures.map((of) => texelsOf(of, mesh)),
         pictures: this.pictures[k],
         // From 0 to 1 over the picture, of the skirt's vertices too.
@@ -101,7 +102,8 @@ export class ScannedPainter {
     const { context, view: [scale, x, y] } = this;
     for (const k of frame.order) {
       if (!this.layers[k]) continue;
-      const { edges, triangles } = this.layers[k];
+      const { triangles } = this.layers[k];
+      const edges = (this.layers[k].edges ??= edgesOf(triangles));
       const { positions } = frame.layers[k];
       const go = (step, vertex) => context[step](positions[2 * vertex] * scale + x, positions[2 * vertex + 1] * scale + y);
       context.lineWidth = 2 * thickness;
