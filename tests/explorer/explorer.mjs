@@ -79,6 +79,7 @@ async function proofs() {
   check(await page.title() === `${answer.name} – inbetween`, 'the page opens and draws');
   await page.screenshot({ path: join(folder, `${name}-page.png`) });
 
+  if (painter === 'processor') await mixes(page);
   await pixels(page, answer, answer.poses[0].at, 'at the first pose');
   if (plane) await probe(page, answer);
   if (looksOnly) return reports(outside, kept);
@@ -163,6 +164,41 @@ async function shownPlace(page) {
 async function weights(page) {
   const rows = await page.$$eval('#weights .weight', (all) => all.map((row) => row.getAttribute('aria-label')));
   return rows.map((row) => Number(/weight (-?[\d.]+)/.exec(row)[1]));
+}
+
+/** Two textures of any colour and alpha, added up by the page's own painter, against the sums themselves. */
+async function mixes(page) {
+  const off = await page.evaluate(async () => {
+    const { LightMix, PlainMix } = await import('./mixing.js');
+    let state = 1;
+    const random = (most) => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) % (most + 1);
+    const light = (value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4);
+    const value = (part) => (part <= 0.0031308 ? 12.92 * part : 1.055 * part ** (1 / 2.4) - 0.055);
+    const same = (part) => part;
+    return [[new PlainMix(1), same, same], [new LightMix(1), light, value]].map(([mix, into, back]) => {
+      let worst = 0;
+      for (let k = 0; k < 4000; k++) {
+        const colours = [0, 1].map(() => [random(255), random(255), 255 - 255 * (k & 1), k % 3 ? random(255) : 255]);
+        const weights = [0.5 + random(128) / 256, 0];
+        weights[1] = 1 - weights[0];
+        mix.begin(1);
+        mix.weights(weights).forEach((weight, t) => {
+          const [r, g, b, a] = colours[t];
+          mix.add({ width: 1, height: 1, stride: 2, data: new Uint32Array(4).fill(r | (g << 8) | (b << 16) | (a << 24)) }, 0, 0, 0, 0, 1, weight);
+        });
+        const pixel = mix.pixel(0, 255, { opacity: 1, tint: [0, 0, 0, 0] });
+        const alpha = weights[0] * colours[0][3] + weights[1] * colours[1][3];
+        worst = Math.max(worst, Math.abs((pixel >>> 24) - alpha));
+        for (let c = 0; c < 3 && alpha > 0; c++) {
+          const sum = [0, 1].reduce((all, t) => all + weights[t] * colours[t][3] * into(colours[t][c] / 255), 0);
+          // What is nearly clear may be off by more: nobody sees it.
+          worst = Math.max(worst, (Math.abs(((pixel >>> (8 * c)) & 255) - 255 * back(sum / alpha)) * alpha) / 255);
+        }
+      }
+      return worst;
+    });
+  });
+  check(off.every((worst) => worst < 1.6), `the painter's sums of textures are off by at most ${off.map((worst) => worst.toFixed(2)).join(' and, in light, ')} of 255`);
 }
 
 /** The frame on the screen against that of the command, at one pixel a pixel. */

@@ -144,4 +144,6 @@ function light(lights, value) {
   return lights[below] + (value - below) * (lights[below + 1] - lights[below]);
 }
 
-const packed = (red, green, blue, alpha) => (red + 0.5) | ((green + 0.5) << 8) | ((blue + 0.5) << 16) | ((alpha + 0.5) << 24);
+/** Rounding may lead beyond what a byte holds. */
+const byte = (value) => (value < 254.5 ? value + 0.5 : 255);
+const packed = (red, green, blue, alpha) => byte(red) | (byte(green) << 8) | (byte(blue) << 16) | (byte(alpha) << 24);
