@@ -27,7 +27,9 @@ export async function landmarkByKeys(tools) {
   const cross = (cell) => cell.locator('[role="status"]').textContent().then((text) => text.split(', ').map(Number));
   const [[first, cell], [second, other]] = cells;
   await cell.locator('.drawing').focus();
-  const isFree = () => cell.locator('.drawing').evaluate((svg) => {
+  const isFree = () => cell.locator('.drawing').evaluate(async (svg) => {
+    // The cross is drawn with the next displayed frame.
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
     const { x, y, width, height } = svg.querySelector('.cross').getBBox();
     const at = Object.assign(svg.createSVGPoint(), { x: x + width / 2, y: y + height / 2 });
     const near = [...svg.querySelectorAll('.mark, .line, .link')].some((mark) => {
