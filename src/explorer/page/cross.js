@@ -29,10 +29,8 @@ export function attachCross(cell, unit) {
     if (way) {
       const step = (event.shiftKey ? FINE_STEP : STEP) * unit(cell);
       move(cell, cell.cross.map((value, axis) => value + way[axis] * step));
-    } else if (event.key === ' ') {
-      put(cell, cell.cross);
-      tell(cell);
-    } else return;
+    } else if (event.key === ' ') put(cell, cell.cross);
+    else return;
     event.preventDefault();
     event.stopPropagation();
   });

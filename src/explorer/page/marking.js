@@ -27,8 +27,7 @@ export function press(event, cell) {
   const group = event.target.closest('.mark, .line');
   if (group?.classList.contains('line')) return dragLine(event, cell, group.dataset.landmark || null);
   if (group) return dragged(event, cell, group.dataset.landmark || null, (next) => placeUnder(next, cell));
-  if (store.view.mark === 'line') begin(cell, placeUnder(event, cell));
-  else propose(cell, placeUnder(event, cell));
+  start(cell, placeUnder(event, cell));
 }
 
 /** The same from the keyboard, at a place: the next point of a line, the place of a new landmark on this pose, or a new one. */
@@ -40,8 +39,7 @@ export function put(cell, at) {
   } else if (fresh && !fresh.path) {
     fresh.at[pose] = at;
     emit('held');
-  } else if (store.view.mark === 'line') begin(cell, at);
-  else propose(cell, at);
+  } else start(cell, at);
 }
 
 /** The end of a line that is being drawn on this pose follows. */
@@ -135,6 +133,12 @@ function dragged(event, cell, name, placed) {
 }
 
 // New ones.
+
+/** A new line or point, as is chosen. */
+function start(cell, at) {
+  if (store.view.mark === 'line') begin(cell, at);
+  else propose(cell, at);
+}
 
 /** Where the present match has a place of a pose, on all drawn poses; without a match, the same place. */
 async function carried(cell, at) {

@@ -1,5 +1,6 @@
 // What is drawn over the drawing of a pose: outline, links, mesh, landmarks.
 import { s, set } from './dom.js';
+import { isUpright } from './geometry.js';
 import { match, ownLandmarks, placesOf } from './match.js';
 import { store } from './state.js';
 
@@ -67,10 +68,10 @@ function meshPath(index, px) {
   let good = '';
   let wrong = '';
   for (let t = 0; t < mesh.triangles.length; t += 3) {
-    const [a, b, c] = mesh.triangles.subarray(t, t + 3);
-    const area = (points[2 * b] - points[2 * a]) * (points[2 * c + 1] - points[2 * a + 1]) - (points[2 * b + 1] - points[2 * a + 1]) * (points[2 * c] - points[2 * a]);
+    const corners = mesh.triangles.subarray(t, t + 3);
+    const [a, b, c] = corners;
     const path = `M${at(a)}L${at(b)} ${at(c)}Z`;
-    if (area > 0) good += path;
+    if (isUpright(corners, points)) good += path;
     else wrong += path;
   }
   return s('g', { 'stroke-width': 0.6 * px }, s('path', { d: good }), s('path', { class: 'wrong', d: wrong }));
