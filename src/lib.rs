@@ -55,7 +55,11 @@ pub mod mesh;
 // Stages, as data flows.
 pub mod input;
 
+pub mod appearance;
+
 pub mod matching;
+
+pub mod registration;
 
 pub mod compatible;
 

@@ -16,6 +16,7 @@ mod boundaries;
 mod character;
 mod deformed;
 mod drawings;
+mod drawn;
 mod error;
 mod figure;
 mod inside;

@@ -7,10 +7,12 @@ use std::path::{Path, PathBuf};
 const FOUNDATIONS: [&str; 4] = ["math", "mesh", "outline", "solve"];
 
 /// What each stage may use of other stages: types that it consumes or hands on.
-const STAGES: [(&str, &[&str]); 11] = [
+const STAGES: [(&str, &[&str]); 13] = [
     // OBJ files hold forms.
     ("input", &["shape3d"]),
-    ("matching", &[]),
+    ("appearance", &["input"]),
+    ("matching", &["appearance"]),
+    ("registration", &["appearance"]),
     ("compatible", &["matching"]),
     ("pose", &["matching"]),
     ("weights", &[]),

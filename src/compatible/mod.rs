@@ -22,7 +22,7 @@ mod refine;
 mod simplify;
 mod triangulate;
 
-pub use refine::{RefineError, RefineOptions, RefineReport, refine};
+pub use refine::{Guide, RefineError, RefineOptions, RefineReport, refine, refine_guided};
 pub use simplify::{
     Simplification, Simplified, SimplifiedAlone, SimplifyError, SimplifyOptions, SimplifyReport, simplify,
 };

@@ -24,6 +24,9 @@ const FINE_SAMPLES: usize = 2048;
 #[derive(Debug, Clone)]
 pub(super) struct Curve {
     arc: ArcLength,
+    /// The centroid of the ring's length and its perimeter, in source units.
+    centre: Point,
+    perimeter: f64,
     /// Even samples of two turns and a bit: what is near to a place is in one piece.
     fine: Vec<Point>,
     /// The parameter of the vertex farthest from the centroid: it depends on the shape, not on the ring's first point.
@@ -52,12 +55,28 @@ impl Curve {
             .collect();
         let mut fine = turn.repeat(2);
         fine.push(turn[0]);
-        Ok(Self { arc, fine, start })
+        Ok(Self {
+            arc,
+            centre,
+            perimeter,
+            fine,
+            start,
+        })
     }
 
     /// The curve seen in a mirror, run so that its area keeps its sign: its parameter `t` is this one's `1 - t`.
     pub(super) fn mirrored(ring: &Ring) -> Result<Self, RingError> {
         Self::new(&ring.map(|p| Point::new(-p.x, p.y))?.reversed())
+    }
+
+    /// A place of the source in the coordinates of the curve.
+    pub(super) fn normalised(&self, place: Point) -> Point {
+        (place - self.centre) / self.perimeter
+    }
+
+    /// A place in the coordinates of the curve in those of the source.
+    pub(super) fn in_source(&self, place: Point) -> Point {
+        place * self.perimeter + self.centre
     }
 
     /// The point at parameter `t`.

@@ -15,7 +15,7 @@ const COARSE_STRIDE: usize = 5;
 pub(super) const STIFFNESSES: [f64; 5] = [1e-3, 1e-3, 3e-4, 1e-4, 1e-5];
 
 /// The reference's rows, with everything about them that does not depend on the other poses.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Frame {
     /// The reference's parameter by row: increasing, not wrapped.
     pub(super) rows: Vec<f64>,

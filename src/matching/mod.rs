@@ -8,9 +8,11 @@
 //! - `coarse`, `pair`, `thin_plate`, `monotone`: from coarse candidates to the match of a pose to the reference.
 //! - `n_way`, `landmark`: all poses, guided by landmarks.
 
+mod candidates;
 mod coarse;
 mod correspondence;
 mod curve;
+mod drawn;
 mod elastic;
 mod error;
 mod feature;
@@ -23,6 +25,7 @@ mod reflection;
 mod start;
 mod thin_plate;
 
+pub use candidates::RingCandidates;
 pub use correspondence::{Correspondence, CorrespondenceError};
 pub use error::MatchError;
 pub use feature::SalientPoint;

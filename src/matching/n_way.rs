@@ -126,20 +126,8 @@ pub(crate) fn match_rings_beside<T: Send>(
     beside: impl FnOnce() -> T + Send,
 ) -> Result<(RingMatch, T), MatchError> {
     let count = rings.len();
-    if count == 0 {
-        return Err(MatchError::NoPose);
-    }
-    if let Some(reference) = options.reference
-        && reference >= count
-    {
-        return Err(MatchError::NoSuchReference { reference, count });
-    }
     let mut landmarks = validated(landmarks, count)?;
-    let forms = rings
-        .par_iter()
-        .enumerate()
-        .map(|(pose, ring)| Form::new(ring).map_err(|source| MatchError::Degenerate { pose, source }))
-        .collect::<Result<Vec<Form>, MatchError>>()?;
+    let forms = forms(rings, options)?;
     let reference = options.reference.unwrap_or_else(|| most_central(&forms));
     let given = landmarks.clone();
     carry_to_reference(&forms, reference, &mut landmarks)?;
@@ -154,6 +142,42 @@ pub(crate) fn match_rings_beside<T: Send>(
         let ((), beside) = rayon::join(|| match_jointly(&forms, &mut star), beside);
         (star, beside)
     };
+    let matched = assembled(
+        rings,
+        &forms,
+        reference,
+        [&given, &landmarks],
+        star,
+        options.mirror_hints,
+    )?;
+    Ok((matched, beside))
+}
+
+/// The curves, measured.
+pub(super) fn forms(rings: &[Ring], options: &MatchOptions) -> Result<Vec<Form>, MatchError> {
+    let count = rings.len();
+    if count == 0 {
+        return Err(MatchError::NoPose);
+    }
+    if let Some(reference) = options.reference.filter(|reference| *reference >= count) {
+        return Err(MatchError::NoSuchReference { reference, count });
+    }
+    (rings.par_iter().enumerate())
+        .map(|(pose, ring)| Form::new(ring).map_err(|source| MatchError::Degenerate { pose, source }))
+        .collect()
+}
+
+/// The matches of all poses with what there is to say of them. Of the landmarks, first those that were given, then with those that the
+/// reference lacked.
+pub(super) fn assembled(
+    rings: &[Ring],
+    forms: &[Form],
+    reference: usize,
+    [given, landmarks]: [&[Landmark]; 2],
+    star: StarMatch,
+    mirror_hints: MirrorHints,
+) -> Result<RingMatch, MatchError> {
+    let count = rings.len();
     let StarMatch { frame, matches, .. } = star;
     let rows = (0..frame.rows.len())
         .map(|row| {
@@ -172,7 +196,7 @@ pub(crate) fn match_rings_beside<T: Send>(
                 .iter()
                 .filter(|l| l.at[reference].is_some() && l.at[pose].is_some())
                 .count();
-            let skip = options.mirror_hints == MirrorHints::Skip || said >= ORIENTING_LANDMARKS;
+            let skip = mirror_hints == MirrorHints::Skip || said >= ORIENTING_LANDMARKS;
             let reflection_ratio = if pose == reference || skip {
                 1.0
             } else {
@@ -194,16 +218,15 @@ pub(crate) fn match_rings_beside<T: Send>(
             }
         })
         .collect();
-    let matched = RingMatch {
+    Ok(RingMatch {
         reference,
         correspondence: Correspondence::new(rows)?,
         report: MatchReport { poses },
-    };
-    Ok((matched, beside))
+    })
 }
 
 /// The first pose, unless another's sum of coarse costs to all others is clearly less; then the one with the least.
-fn most_central(forms: &[Form]) -> usize {
+pub(super) fn most_central(forms: &[Form]) -> usize {
     let count = forms.len();
     if count < 3 {
         return 0;
@@ -231,7 +254,11 @@ fn most_central(forms: &[Form]) -> usize {
 
 /// Gives the reference every landmark that it lacks and at least two poses have: the mean of where the matches of those
 /// poses put it. A landmark of fewer poses ties nothing together.
-fn carry_to_reference(forms: &[Form], reference: usize, landmarks: &mut [Landmark]) -> Result<(), MatchError> {
+pub(super) fn carry_to_reference(
+    forms: &[Form],
+    reference: usize,
+    landmarks: &mut [Landmark],
+) -> Result<(), MatchError> {
     for missing in 0..landmarks.len() {
         let having: Vec<(usize, f64)> = (0..forms.len())
             .filter_map(|pose| Some((pose, landmarks[missing].at[pose]?)))
@@ -260,10 +287,26 @@ fn carry_to_reference(forms: &[Form], reference: usize, landmarks: &mut [Landmar
 }
 
 /// Matches of some poses to the reference, which has none itself.
-struct StarMatch {
-    frame: Frame,
-    pins: Vec<Vec<Pin>>,
-    matches: Vec<Option<PairMatch>>,
+#[derive(Debug, Clone)]
+pub(super) struct StarMatch {
+    pub(super) frame: Frame,
+    pub(super) pins: Vec<Vec<Pin>>,
+    pub(super) matches: Vec<Option<PairMatch>>,
+}
+
+/// The reference's rows and where landmarks set them, nothing matched yet.
+pub(super) fn unmatched(forms: &[Form], reference: usize, landmarks: &[Landmark]) -> StarMatch {
+    let mut placed: Vec<f64> = landmarks.iter().filter_map(|l| l.at[reference]).collect();
+    placed.sort_by(f64::total_cmp);
+    let frame = Frame::new(&forms[reference], &placed);
+    let pins = (0..forms.len())
+        .map(|pose| pins(&frame, reference, landmarks, pose))
+        .collect();
+    StarMatch {
+        frame,
+        pins,
+        matches: vec![None; forms.len()],
+    }
 }
 
 /// Matches some poses to the reference.
@@ -273,12 +316,7 @@ fn match_some(
     landmarks: &[Landmark],
     wanted: &[usize],
 ) -> Result<StarMatch, MatchError> {
-    let mut placed: Vec<f64> = landmarks.iter().filter_map(|l| l.at[reference]).collect();
-    placed.sort_by(f64::total_cmp);
-    let frame = Frame::new(&forms[reference], &placed);
-    let pins: Vec<Vec<Pin>> = (0..forms.len())
-        .map(|pose| pins(&frame, reference, landmarks, pose))
-        .collect();
+    let StarMatch { frame, pins, .. } = unmatched(forms, reference, landmarks);
     let model = Model::new(vec![ModelCurve {
         form: &forms[reference],
         parameters: &frame.rows,
@@ -350,11 +388,16 @@ fn pins(frame: &Frame, reference: usize, landmarks: &[Landmark], pose: usize) ->
 /// A match that goes through the pins exactly as given, not as rounded on the way.
 fn pinned_match(frame: &Frame, model: &Model, form: &Form, pins: &[Pin], current: Option<&[f64]>) -> Option<PairMatch> {
     let mut matched = match_pose(frame, model, form, pins, current)?;
+    through_pins(&mut matched, pins);
+    Some(matched)
+}
+
+/// The pins exactly as given, but for whole turns, not as rounded on the way.
+pub(super) fn through_pins(matched: &mut PairMatch, pins: &[Pin]) {
     for pin in pins {
         let turns = (matched.parameters[pin.row] - pin.parameter).round();
         matched.parameters[pin.row] = pin.parameter + turns;
     }
-    Some(matched)
 }
 
 #[cfg(test)]

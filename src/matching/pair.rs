@@ -100,7 +100,7 @@ pub(super) fn match_pose(
         .map(|candidate| task.guided(&table, candidate))
         .collect();
     let chosen = task.choose(guided)?;
-    Some(task.measured(task.refit(&chosen.map)))
+    Some(measured(model, pose, task.refit(&chosen.map)))
 }
 
 /// One pose, what it is compared with, and the landmarks it has to go through.
@@ -121,31 +121,11 @@ impl Task<'_> {
             let columns = self.pose.even_parameters(rows.len());
             return MismatchTable::new(rows, &curves, Samples::fine(&self.pose.curve, columns));
         }
-        let columns = self.pinned_columns().into_iter().step_by(ELASTIC_STRIDE).collect();
+        let columns = pinned_columns(self.pins, self.frame.rows.len());
+        let columns = columns.into_iter().step_by(ELASTIC_STRIDE).collect();
         let forced = self.pins.iter().skip(1);
         let forced = forced.map(|pin| (pin.row - first_row) / ELASTIC_STRIDE).collect();
         MismatchTable::pinned(rows, &curves, Samples::fine(&self.pose.curve, columns), forced)
-    }
-
-    /// By row from the first pin's on, the parameter of the pose in even steps between pins.
-    fn pinned_columns(&self) -> Vec<f64> {
-        let (pins, count) = (self.pins, self.frame.rows.len());
-        let mut columns = vec![0.0; count];
-        for (index, pin) in pins.iter().enumerate() {
-            let begin = pin.row - pins[0].row;
-            let (end, closing) = match pins.get(index + 1) {
-                Some(next) => (next.row - pins[0].row, next.parameter),
-                None => (count, pins[0].parameter),
-            };
-            // One pin alone spans the whole turn.
-            let gap = wrapped(closing - pin.parameter);
-            let gap = if gap == 0.0 { 1.0 } else { gap };
-            let base = pins[0].parameter + wrapped(pin.parameter - pins[0].parameter);
-            for (k, column) in columns.iter_mut().enumerate().take(end).skip(begin) {
-                *column = base + gap * (k - begin) as f64 / (end - begin) as f64;
-            }
-        }
-        columns
     }
 
     /// Fine matches around the best coarse ones and around the current one.
@@ -221,9 +201,7 @@ impl Task<'_> {
     }
 
     fn refit(&self, map: &CyclicMap) -> Vec<f64> {
-        let count = self.frame.rows.len();
         let mut parameters: Vec<f64> = self.model.rows.iter().map(|t| map.at(*t)).collect();
-        let least_step = SLOPES.0 / count as f64;
         for level in 1..STIFFNESSES.len() {
             for _ in 0..REFITS {
                 let Some(expected) = self.carried(level, &parameters) else {
@@ -232,45 +210,62 @@ impl Task<'_> {
                 let reach = REFIT_REACH / level as f64;
                 let moved = parameters.par_iter_mut().with_min_len(ROWS_A_TASK).zip(expected);
                 moved.for_each(|(t, p)| *t = self.pose.curve.nearest_within(p, *t, reach));
-                settle(&mut parameters, self.pins, |values, pinned| {
-                    make_increasing(values, pinned, least_step)
-                });
+                increasing(&mut parameters, self.pins);
             }
         }
-        settle(&mut parameters, self.pins, |values, pinned| {
-            limit_steps(values, pinned, SLOPES.1 / count as f64);
-        });
+        limited(&mut parameters, self.pins);
         parameters
-    }
-
-    fn measured(&self, parameters: Vec<f64>) -> PairMatch {
-        let count = parameters.len();
-        let measured = RowSamples::new(self.pose, parameters.clone());
-        let own = &measured.fine;
-        let curves = self.model.curves.iter().map(|curve| &curve.measured.fine);
-        let mut cost = 0.0;
-        let mut mismatch = vec![0.0; count];
-        for curve in curves.clone() {
-            for (k, density) in mismatch.iter_mut().enumerate() {
-                let (ds1, ds2) = (step_after(&curve.parameters, k), step_after(&own.parameters, k));
-                let windows = curve.turning.iter().zip(&own.turning);
-                let turning: f64 = windows.map(|(a, b)| f64::from((a[k] - b[k]).abs())).sum();
-                let part = step_cost(turning, ds1, ds2) / curves.len() as f64;
-                *density += part / (0.5 * (ds1 + ds2));
-                cost += part;
-            }
-        }
-        PairMatch {
-            parameters,
-            measured,
-            mismatch,
-            cost,
-        }
     }
 }
 
+/// A match with its costs and mismatches.
+pub(super) fn measured(model: &Model, pose: &Form, parameters: Vec<f64>) -> PairMatch {
+    let count = parameters.len();
+    let measured = RowSamples::new(pose, parameters.clone());
+    let own = &measured.fine;
+    let curves = model.curves.iter().map(|curve| &curve.measured.fine);
+    let mut cost = 0.0;
+    let mut mismatch = vec![0.0; count];
+    for curve in curves.clone() {
+        for (k, density) in mismatch.iter_mut().enumerate() {
+            let (ds1, ds2) = (step_after(&curve.parameters, k), step_after(&own.parameters, k));
+            let windows = curve.turning.iter().zip(&own.turning);
+            let turning: f64 = windows.map(|(a, b)| f64::from((a[k] - b[k]).abs())).sum();
+            let part = step_cost(turning, ds1, ds2) / curves.len() as f64;
+            *density += part / (0.5 * (ds1 + ds2));
+            cost += part;
+        }
+    }
+    PairMatch {
+        parameters,
+        measured,
+        mismatch,
+        cost,
+    }
+}
+
+/// By row from the first pin's on, the parameter of the pose in even steps between pins; there is one at least.
+pub(super) fn pinned_columns(pins: &[Pin], count: usize) -> Vec<f64> {
+    let mut columns = vec![0.0; count];
+    for (index, pin) in pins.iter().enumerate() {
+        let begin = pin.row - pins[0].row;
+        let (end, closing) = match pins.get(index + 1) {
+            Some(next) => (next.row - pins[0].row, next.parameter),
+            None => (count, pins[0].parameter),
+        };
+        // One pin alone spans the whole turn.
+        let gap = wrapped(closing - pin.parameter);
+        let gap = if gap == 0.0 { 1.0 } else { gap };
+        let base = pins[0].parameter + wrapped(pin.parameter - pins[0].parameter);
+        for (k, column) in columns.iter_mut().enumerate().take(end).skip(begin) {
+            *column = base + gap * (k - begin) as f64 / (end - begin) as f64;
+        }
+    }
+    columns
+}
+
 /// The cheapest match within a band, starting within `reach` columns of the middle of its first row.
-fn best_path(table: &MismatchTable, band: &[(usize, usize)], reach: usize) -> Option<CoarseMatch> {
+pub(super) fn best_path(table: &MismatchTable, band: &[(usize, usize)], reach: usize) -> Option<CoarseMatch> {
     let middle = (band[0].0 + band[0].1) / 2;
     let start = cheapest_start(table, middle.saturating_sub(reach)..=middle + reach, band)?;
     cheapest_path(table, start, band).map(|path| CoarseMatch::from_path(table, &path))
@@ -283,6 +278,22 @@ fn step_after(parameters: &[f64], k: usize) -> f64 {
         None => parameters[0] + 1.0,
     };
     next - parameters[k]
+}
+
+/// Makes the parameters increase from row to row, by at least a twentieth of an even step.
+pub(super) fn increasing(parameters: &mut [f64], pins: &[Pin]) {
+    let least_step = SLOPES.0 / parameters.len() as f64;
+    settle(parameters, pins, |values, pinned| {
+        make_increasing(values, pinned, least_step)
+    });
+}
+
+/// Spreads steps of more than twenty even ones.
+pub(super) fn limited(parameters: &mut [f64], pins: &[Pin]) {
+    let largest_step = SLOPES.1 / parameters.len() as f64;
+    settle(parameters, pins, |values, pinned| {
+        limit_steps(values, pinned, largest_step)
+    });
 }
 
 /// Runs `change` on the parameters cut open at a pinned row, or, without pins, where they increase most freely.
@@ -318,7 +329,7 @@ fn settle(parameters: &mut [f64], pins: &[Pin], change: impl Fn(&mut [f64], &[us
 }
 
 /// The columns within `reach` perimeters of `map`, moved ahead by whole turns until none is negative.
-fn band_around(table: &MismatchTable, map: &CyclicMap, reach: f64) -> Band {
+pub(super) fn band_around(table: &MismatchTable, map: &CyclicMap, reach: f64) -> Band {
     let columns = table.column_count() as f64;
     let origin = table.column_parameter(0);
     let position = |row: usize| (map.at(table.row_parameter(row)) - origin) * columns;

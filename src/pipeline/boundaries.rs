@@ -1,6 +1,8 @@
 //! The outlines' part of a mapping: matched, and simplified to polygons with corresponding vertices.
 
+use super::drawn::{RegistrationGuide, match_by_drawing};
 use super::{PipelineError, Stage};
+use crate::appearance::Appearance;
 use crate::compatible::{Simplification, Simplified, SimplifiedAlone, SimplifyError, SimplifyOptions};
 use crate::input::Drawing;
 use crate::matching::{
@@ -9,6 +11,9 @@ use crate::matching::{
 use crate::math::Point;
 use crate::outline::{Outline, Ring};
 use crate::scene::Scene;
+
+/// How far corresponding vertices may drift apart where drawings say what corresponds, as a share of the deviation allowed.
+const DRIFT_SHARE: f64 = 0.5;
 
 /// The outlines matched and simplified, and what that was made of besides the drawings.
 #[derive(Debug)]
@@ -19,6 +24,11 @@ pub(super) struct Boundaries {
     /// Holes in one order.
     pub(super) outlines: Vec<Outline>,
     pub(super) matched: Matched,
+    /// What the drawings show, and where that is in every pose; `None` where nothing is drawn inside.
+    appearances: Vec<Appearance>,
+    pub(super) guide: Option<RegistrationGuide>,
+    /// Pairs of points inside that guide the registration.
+    inside: Vec<Vec<Option<Point>>>,
     /// The places of the landmarks, #landmarks x #poses.
     pub(super) pinned: Vec<Vec<f64>>,
     /// To be varied.
@@ -32,6 +42,7 @@ impl Boundaries {
         scene: &Scene,
         drawings: &[Drawing],
         on_outline: &[Landmark],
+        inside: &[Vec<Option<Point>>],
         before: Option<&Self>,
         begins: &mut dyn FnMut(Stage),
     ) -> Result<Self, PipelineError> {
@@ -40,9 +51,34 @@ impl Boundaries {
         let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
         let refusal = |error| simplify_refusal(&scene.names(), error);
         let given = outlines.clone();
-        let alone = || alone(&given, on_outline, &options, before);
-        let (matched, alone) = match_outlines(scene, &mut outlines, on_outline, alone)?;
+        let alone_options = options.clone();
+        let alone = || alone(&given, on_outline, &alone_options, before);
+        let appearances = match before {
+            Some(before) => before.appearances.clone(),
+            None => super::drawn::appearances(drawings),
+        };
+        let is_drawn = appearances.iter().any(Appearance::is_drawn);
+        let (matched, alone, guide) = if is_drawn {
+            let options = MatchOptions {
+                reference: scene.reference,
+                ..MatchOptions::default()
+            };
+            let (matched, alone) = rayon::join(
+                || match_by_drawing(&scene.names(), &mut outlines, &appearances, on_outline, inside, options),
+                alone,
+            );
+            let (matched, guide) = matched?;
+            (matched, alone, Some(guide))
+        } else {
+            let (matched, alone) = match_outlines(scene, &mut outlines, on_outline, alone)?;
+            (matched, alone, None)
+        };
         let alone = alone.map_err(refusal)?;
+        // Where drawings say what corresponds, the mesh is held to it.
+        let options = match guide {
+            Some(_) => options.with_drift(DRIFT_SHARE * scene.mesh.simplify),
+            None => options,
+        };
         begins(Stage::Simplification);
         let pinned: Vec<Vec<f64>> = on_outline
             .iter()
@@ -57,6 +93,9 @@ impl Boundaries {
             tolerance: scene.mesh.simplify,
             outlines,
             matched,
+            appearances,
+            guide,
+            inside: inside.to_vec(),
             pinned,
             simplification,
             simplified,
@@ -64,8 +103,11 @@ impl Boundaries {
     }
 
     /// Whether they are those of this scene, too, whose drawings are the same.
-    pub(super) fn serve(&self, scene: &Scene, on_outline: &[Landmark]) -> bool {
-        self.on_outline == on_outline && self.reference == scene.reference && self.tolerance == scene.mesh.simplify
+    pub(super) fn serve(&self, scene: &Scene, on_outline: &[Landmark], inside: &[Vec<Option<Point>>]) -> bool {
+        self.inside == inside
+            && self.on_outline == on_outline
+            && self.reference == scene.reference
+            && self.tolerance == scene.mesh.simplify
     }
 }
 
@@ -140,7 +182,7 @@ fn simplify_refusal(names: &[String], error: SimplifyError) -> PipelineError {
 }
 
 /// The matching's refusal with the poses' names.
-fn match_refusal(names: &[String], error: MatchError) -> PipelineError {
+pub(super) fn match_refusal(names: &[String], error: MatchError) -> PipelineError {
     let name = |pose: usize| names.get(pose).cloned().unwrap_or_default();
     match error {
         MatchError::LandmarkOrder { landmark, pose, other } => PipelineError::LandmarkOrder {
@@ -178,7 +220,7 @@ fn everywhere(landmark: &Landmark, correspondence: &Correspondence) -> Option<Ve
 }
 
 /// Puts the holes of every pose in the order of the reference's: each at the nearest place relative to its outline.
-fn order_holes(outlines: &mut [Outline], reference: usize) -> Result<(), PipelineError> {
+pub(super) fn order_holes(outlines: &mut [Outline], reference: usize) -> Result<(), PipelineError> {
     let places: Vec<Point> = match outlines.get(reference) {
         Some(outline) => outline
             .holes()

@@ -7,7 +7,8 @@ use super::landmarks::{self, Landmarks};
 use super::triangulation::{self, Labels, LandmarkLabel};
 use super::{MappingReport, PipelineError, Stage, deformed};
 use crate::compatible::{
-    CompatibleMesh, Effort, RefineOptions, Simplification, Simplified, TriangulateReport, refine, triangulate_features,
+    CompatibleMesh, Effort, Guide, RefineOptions, Simplification, Simplified, TriangulateReport, refine_guided,
+    triangulate_features,
 };
 use crate::input::Drawing;
 use crate::math::Point;
@@ -89,11 +90,19 @@ fn map_drawn(
     check_hole_counts(&names, drawings)?;
     let landmarks = landmarks::sorted(scene, drawings)?;
 
-    let boundaries = match before.filter(|before| before.serve(scene, &landmarks.on_outline)) {
+    let inside: Vec<Vec<Option<Point>>> = landmarks.points.iter().map(|point| point.at.clone()).collect();
+    let boundaries = match before.filter(|before| before.serve(scene, &landmarks.on_outline, &inside)) {
         Some(same) => Arc::clone(same),
         None => {
             let before = before.map(Arc::as_ref);
-            Arc::new(Boundaries::new(scene, drawings, &landmarks.on_outline, before, begins)?)
+            Arc::new(Boundaries::new(
+                scene,
+                drawings,
+                &landmarks.on_outline,
+                &inside,
+                before,
+                begins,
+            )?)
         }
     };
     let Boundaries {
@@ -136,7 +145,10 @@ fn map_drawn(
 
     begins(Stage::Refinement);
     let options = RefineOptions::default().with_edge_length(scene.mesh.edge_length);
-    let refined = |bare: &Bare| refine(&bare.mesh, &options).map_err(|error| PipelineError::stage(&names, None, error));
+    let guide = boundaries.guide.as_ref().map(|guide| guide as &dyn Guide);
+    let refined = |bare: &Bare| {
+        refine_guided(&bare.mesh, &options, guide).map_err(|error| PipelineError::stage(&names, None, error))
+    };
     let (mut mesh, mut refinement) = refined(&bare)?;
     if let Some((bare_first, simplified_first)) = first {
         let (mesh_first, refinement_first) = refined(&bare_first)?;

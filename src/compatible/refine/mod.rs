@@ -20,6 +20,7 @@
 
 mod distortion;
 mod flip;
+mod guide;
 mod smooth;
 mod split;
 mod star;
@@ -27,6 +28,8 @@ mod widen;
 
 #[cfg(test)]
 mod tests;
+
+pub use guide::Guide;
 
 use super::CompatibleMesh;
 use super::editable::{Curves, EditableMesh};
@@ -107,6 +110,18 @@ const DISTORTION_ROUNDS: usize = 3;
 /// # Errors
 /// [`RefineError`] if the edge length is out of range.
 pub fn refine(mesh: &CompatibleMesh, options: &RefineOptions) -> Result<(CompatibleMesh, RefineReport), RefineError> {
+    refine_guided(mesh, options, None)
+}
+
+/// As [`refine`]; inside, the poses follow `guide`, and vertices that split the boundary lie where it has them on their edges.
+///
+/// # Errors
+/// As [`refine`].
+pub fn refine_guided(
+    mesh: &CompatibleMesh,
+    options: &RefineOptions,
+    guide: Option<&dyn Guide>,
+) -> Result<(CompatibleMesh, RefineReport), RefineError> {
     if options.edge_length.is_nan() || options.edge_length < SMALLEST_EDGE_LENGTH {
         return Err(RefineError::BadEdgeLength {
             given: options.edge_length,
@@ -125,20 +140,20 @@ pub fn refine(mesh: &CompatibleMesh, options: &RefineOptions) -> Result<(Compati
     // Halve the length from a coarse start: long thin triangles are cut where they are long, then relax.
     let mut length = options.edge_length * 8.0;
     while length > options.edge_length * 0.99 {
-        split::split_long_edges(&mut work, &mut curves, &diagonals, length);
+        split::split_long_edges(&mut work, &mut curves, &diagonals, length, guide);
         flips += flip::flip(&mut work, &curves.paths);
         let stars = Stars::new(&work, &curves);
         smooth::smooth(&mut work, &stars, SMOOTHING_SWEEPS);
         flips += flip::flip(&mut work, &curves.paths);
         // With few vertices, each sweep reaches far; the next level starts from what this one found.
         let stars = Stars::new(&work, &curves);
-        distortion::minimise(&mut work, &stars, DISTORTION_SWEEPS);
+        guide::minimise(&mut work, &stars, DISTORTION_SWEEPS, guide);
         flips += flip::flip(&mut work, &curves.paths);
         length *= 0.5;
     }
     for _ in 1..DISTORTION_ROUNDS {
         let stars = Stars::new(&work, &curves);
-        distortion::minimise(&mut work, &stars, DISTORTION_SWEEPS);
+        guide::minimise(&mut work, &stars, DISTORTION_SWEEPS, guide);
         flips += flip::flip(&mut work, &curves.paths);
     }
     let stars = Stars::new(&work, &curves);

@@ -3,16 +3,26 @@
 use std::collections::BTreeMap;
 
 use super::super::editable::{Curves, EditableMesh};
-use crate::math::Point;
+use super::Guide;
+use crate::math::{Point, point};
 use crate::mesh::{directed_edges, undirected};
 
 /// Power of the mean over the poses: nearly the longest counts, since a limb that is short in most poses and long in one has
 /// to bend there, too.
 const LENGTH_POWER: i32 = 16;
 
+/// The least and largest share of an edge that a new vertex of the boundary may divide.
+const SHARES: (f64, f64) = (0.2, 0.8);
+
 /// Splits edges whose length over the pose's diagonal, in the power mean over the poses, exceeds `length`, longest first.
 /// The new vertices of edges of rings and paths become part of these.
-pub(super) fn split_long_edges(mesh: &mut EditableMesh, curves: &mut Curves, diagonals: &[f64], length: f64) {
+pub(super) fn split_long_edges(
+    mesh: &mut EditableMesh,
+    curves: &mut Curves,
+    diagonals: &[f64],
+    length: f64,
+    guide: Option<&dyn Guide>,
+) {
     let mut on_boundary: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     let rings = &mut curves.rings;
     for (ring, vertices) in rings.iter().enumerate() {
@@ -42,7 +52,8 @@ pub(super) fn split_long_edges(mesh: &mut EditableMesh, curves: &mut Curves, dia
         // The longest third: the rest may be cut off by these.
         let count = long.len().div_ceil(3);
         for &(_, a, b) in &long[..count] {
-            if let Some(middle) = split_edge(mesh, a, b) {
+            let guide = guide.filter(|_| on_boundary.contains_key(&(a, b)) || on_boundary.contains_key(&(b, a)));
+            if let Some(middle) = split_edge(mesh, a, b, guide) {
                 any = true;
                 if let Some(path) = on_path.remove(&undirected(a, b)) {
                     on_path.insert(undirected(a, middle), path);
@@ -79,8 +90,9 @@ fn power_mean_length(mesh: &EditableMesh, diagonals: &[f64], a: usize, b: usize)
     (powers.sum::<f64>() / diagonals.len() as f64).powf(1.0 / f64::from(LENGTH_POWER))
 }
 
-/// Splits the edge `a b` at its middle, if all new triangles are positive in every pose; gives the new vertex.
-fn split_edge(mesh: &mut EditableMesh, a: usize, b: usize) -> Option<usize> {
+/// Splits the edge `a b` if all new triangles are positive in every pose; gives the new vertex. It is at the middle, with a guide at the middle
+/// in the pose that the guide knows and at the corresponding places in the others.
+fn split_edge(mesh: &mut EditableMesh, a: usize, b: usize, guide: Option<&dyn Guide>) -> Option<usize> {
     let sides: Vec<(usize, usize, usize)> = [(a, b), (b, a)]
         .into_iter()
         .filter_map(|(from, to)| mesh.opposite(from, to).map(|apex| (from, to, apex)))
@@ -88,7 +100,19 @@ fn split_edge(mesh: &mut EditableMesh, a: usize, b: usize) -> Option<usize> {
     if sides.is_empty() {
         return None;
     }
-    let places: Vec<Point> = mesh.positions.iter().map(|p| (p[a] + p[b]) * 0.5).collect();
+    let share = |pose: usize| {
+        let known = guide.filter(|guide| guide.reference() != pose).and_then(|guide| {
+            let reference = &mesh.positions[guide.reference()];
+            guide.carried(pose, (reference[a] + reference[b]) * 0.5)
+        });
+        known.map_or(0.5, |place| {
+            let p = &mesh.positions[pose];
+            point::nearest_on_segment(place, p[a], p[b]).0.clamp(SHARES.0, SHARES.1)
+        })
+    };
+    let places: Vec<Point> = (mesh.positions.iter().enumerate())
+        .map(|(pose, p)| p[a] + (p[b] - p[a]) * share(pose))
+        .collect();
     let positive = mesh.positions.iter().zip(&places).all(|(p, &middle)| {
         sides.iter().all(|&(from, to, apex)| {
             crate::math::predicate::is_positive(p[from], middle, p[apex])
@@ -126,7 +150,7 @@ mod tests {
             landmarks: Vec::new(),
             paths: Vec::new(),
         };
-        split_long_edges(&mut mesh, &mut curves, &[1.0; 8], 0.08);
+        split_long_edges(&mut mesh, &mut curves, &[1.0; 8], 0.08, None);
         let longest = |pose: usize| {
             let edges = mesh.triangles().flat_map(|(_, t)| directed_edges(t));
             let places = &mesh.positions[pose];

@@ -8,6 +8,7 @@ use std::collections::BinaryHeap;
 
 use rayon::prelude::*;
 
+use super::drift::Drift;
 use super::edge_grid::EdgeGrid;
 use super::merging::{EdgeInPose, Merge};
 use super::original::PoseOriginal;
@@ -61,6 +62,8 @@ pub(super) struct Collapser<'a> {
     grids: Vec<EdgeGrid>,
     /// Per tuple, what the cost of the edge that starts there is multiplied by; none where there are no tuples.
     weights: &'a [f64],
+    /// What holds vertices to corresponding places, if anything does.
+    drift: Option<&'a Drift<'a>>,
     queue: BinaryHeap<Reverse<Queued>>,
 }
 
@@ -80,6 +83,7 @@ impl<'a> Collapser<'a> {
             areas: Vec::with_capacity(originals.len()),
             grids: Vec::with_capacity(originals.len()),
             weights: &[],
+            drift: None,
             queue: BinaryHeap::with_capacity(2 * total),
         };
         for pose in 0..originals.len() {
@@ -111,6 +115,12 @@ impl<'a> Collapser<'a> {
     /// With the costs of edges multiplied by `weights`, one for each tuple of all rings in a row.
     pub(super) fn weighted(mut self, weights: &'a [f64]) -> Self {
         self.weights = weights;
+        self
+    }
+
+    /// With vertices held to corresponding places.
+    pub(super) fn held(mut self, drift: Option<&'a Drift<'a>>) -> Self {
+        self.drift = drift;
         self
     }
 
@@ -196,18 +206,37 @@ impl<'a> Collapser<'a> {
     /// The cost of collapsing the edge that starts at `b`, and how each pose would do it; `None` if some pose cannot
     /// within the tolerance.
     ///
-    /// The cost is the worst squared relative deviation over the poses; the sum over the poses, scaled down, decides
+    /// The cost is the worst squared relative deviation (or drift) over the poses; the sum over the poses, scaled down, decides
     /// between equals.
     fn candidate(&self, b: usize) -> Option<(f64, Vec<Merge>)> {
         let c = self.next[b];
         if self.is_on_triangle(b) || (self.is_landmark(b) && self.is_landmark(c)) {
             return None;
         }
-        let mut merges = Vec::with_capacity(self.originals.len());
+        let edges: Vec<EdgeInPose<'_>> = (0..self.originals.len()).map(|pose| self.edge(pose, b)).collect();
+        let mut ways = Vec::with_capacity(edges.len());
+        for edge in &edges {
+            let merges = edge.merges(self.tolerance);
+            if merges.is_empty() {
+                return None;
+            }
+            let relative = |merge: Merge| (merge, merge.deviation / edge.size);
+            ways.push(merges.into_iter().map(relative).collect::<Vec<_>>());
+        }
+        let chosen = match self.drift {
+            Some(drift) => {
+                let ends: Vec<[f64; 2]> = (edges.iter())
+                    .map(|edge| [edge.parameters[1], edge.parameters[2]])
+                    .collect();
+                drift.together(self.ring_of[b], &ways, &ends)?
+            }
+            None => (ways.into_iter())
+                .filter_map(|ways| ways.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)))
+                .collect(),
+        };
         let (mut worst, mut sum) = (0.0_f64, 0.0);
-        for pose in 0..self.originals.len() {
-            let merge = self.edge(pose, b).best_merge(self.tolerance)?;
-            let relative = merge.deviation / self.originals[pose].size;
+        let mut merges = Vec::with_capacity(chosen.len());
+        for (merge, relative) in chosen {
             worst = worst.max(relative * relative);
             sum += relative * relative;
             merges.push(merge);

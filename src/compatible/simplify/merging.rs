@@ -6,7 +6,8 @@
 //! - both are convex and turn by less than 180 degrees together: the new vertex is the apex where the lines `a b` and
 //!   `d c` meet.
 //!
-//! Where two ways are open, the pose takes the one that deviates less from its outline. Holes need no rule of their own: they run the
+//! Where two ways are open, the pose takes the one that deviates less from its outline, or, where the merged vertices have to keep
+//! corresponding (module `drift`), the one that does so best. Holes need no rule of their own: they run the
 //! other way round, so that the shape is on the left of every edge, and "reflex" means a right turn for all rings alike.
 //!
 //! A landmark stays where it is: of an edge that ends in one only the other end may go.
@@ -40,8 +41,8 @@ pub(super) struct EdgeInPose<'a> {
 }
 
 impl EdgeInPose<'_> {
-    /// The best way to merge the ends that deviates by `tolerance` of the pose's size at most.
-    pub(super) fn best_merge(&self, tolerance: f64) -> Option<Merge> {
+    /// The ways to merge the ends that deviate by `tolerance` of the pose's size at most; of equal ones the first is preferred.
+    pub(super) fn merges(&self, tolerance: f64) -> Vec<Merge> {
         let [pa, pb, pc, pd] = self.points;
         let [ta, tb, tc, td] = self.parameters;
         let limit = tolerance * self.size;
@@ -50,10 +51,10 @@ impl EdgeInPose<'_> {
             !predicate::is_positive(before, vertex, after)
                 || point::cross(vertex - before, after - before) <= straight * (after - before).norm()
         };
-        let mut best: Option<Merge> = None;
+        let mut merges = Vec::new();
         let mut offer = |merge: Merge| {
-            if merge.deviation <= limit && best.is_none_or(|b| merge.deviation < b.deviation) {
-                best = Some(merge);
+            if merge.deviation <= limit {
+                merges.push(merge);
             }
         };
         let [keeps_b, keeps_c] = self.keeps;
@@ -83,7 +84,7 @@ impl EdgeInPose<'_> {
                 }
             }
         }
-        best
+        merges
     }
 
     /// The merge at `apex`: it stands for the outline point nearest to it, and deviates by that point's distance or by what

@@ -27,6 +27,7 @@
 
 mod alone;
 mod collapse;
+mod drift;
 mod edge_grid;
 mod merging;
 mod original;
@@ -47,6 +48,7 @@ use crate::outline::{Outline, OutlineError, Ring, RingError};
 use alone::PoseAlone;
 pub use alone::SimplifiedAlone;
 use collapse::Collapser;
+use drift::Drift;
 use original::PoseOriginal;
 use tuples::{Pin, TupleRing};
 
@@ -57,11 +59,17 @@ pub struct SimplifyOptions {
     /// The deviation allowed between an outline and its polygon, as a fraction of the pose's diagonal. Default 0.02.
     /// Shapes that are thin all over are held to their width instead: see the module's documentation.
     pub tolerance: f64,
+    /// How far the vertices of different poses may stand from corresponding, along their outlines, as a fraction of the pose's diagonal.
+    /// Default: as far as it comes, as in the paper, which is right where the correspondence itself is a guess.
+    pub drift: Option<f64>,
 }
 
 impl Default for SimplifyOptions {
     fn default() -> Self {
-        Self { tolerance: 0.02 }
+        Self {
+            tolerance: 0.02,
+            drift: None,
+        }
     }
 }
 
@@ -70,6 +78,13 @@ impl SimplifyOptions {
     #[must_use]
     pub fn with_tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
+        self
+    }
+
+    /// The options with vertices held to corresponding places.
+    #[must_use]
+    pub fn with_drift(mut self, drift: f64) -> Self {
+        self.drift = Some(drift);
         self
     }
 
@@ -220,6 +235,8 @@ pub struct Simplification {
     /// Per ring, all tuples.
     joined: Vec<TupleRing>,
     tolerance: f64,
+    /// The largest drift, and the correspondences that it is measured by; none without it.
+    drift: Option<(f64, Vec<Correspondence>)>,
     kept: Order,
     varied: Order,
     variations: usize,
@@ -296,6 +313,7 @@ impl Simplification {
             poses,
             joined,
             tolerance: options.tolerance,
+            drift: options.drift.map(|largest| (largest, correspondences.to_vec())),
             kept: order.clone(),
             varied: order,
             variations: 0,
@@ -359,7 +377,20 @@ impl Simplification {
     fn collapsed(&self, weights: &[f64]) -> Result<(Simplified, Vec<usize>), SimplifyError> {
         let originals: Vec<&PoseOriginal> = self.poses.iter().map(|pose| &pose.original).collect();
         let collapser = Collapser::new(self.joined.clone(), &originals, self.tolerance);
-        let (rings, survivors) = collapser.weighted(weights).survivors();
+        let drift = self.drift.as_ref().map(|(largest, correspondences)| Drift {
+            correspondences,
+            perimeters: (originals.iter())
+                .map(|original| {
+                    original
+                        .rings
+                        .iter()
+                        .map(|ring| ring.perimeter() / original.size)
+                        .collect()
+                })
+                .collect(),
+            largest: *largest,
+        });
+        let (rings, survivors) = collapser.weighted(weights).held(drift.as_ref()).survivors();
         let polygon = |(pose, original): (usize, &&PoseOriginal)| -> Result<(Outline, f64), SimplifyError> {
             let mut points: Vec<Vec<Point>> = rings
                 .iter()

@@ -10,6 +10,7 @@ pub(super) struct OriginalRing {
     parameters: Vec<f64>,
     longest_edge: f64,
     doubled_area: f64,
+    perimeter: f64,
 }
 
 impl OriginalRing {
@@ -20,6 +21,7 @@ impl OriginalRing {
             parameters,
             longest_edge: ring.edges().map(|(a, b)| (b - a).norm()).fold(0.0, f64::max),
             doubled_area: 2.0 * ring.signed_area(),
+            perimeter: ring.perimeter(),
         }
     }
 
@@ -42,6 +44,10 @@ impl OriginalRing {
             count - first + last
         };
         (first..first + steps).map(move |k| (self.parameters[k % count], self.points[k % count]))
+    }
+
+    pub(super) fn perimeter(&self) -> f64 {
+        self.perimeter
     }
 
     /// Twice the signed area.

@@ -94,6 +94,29 @@ impl MismatchTable {
         table
     }
 
+    /// The table of a mismatch given by row and column, in cost per unit length.
+    pub(in super::super) fn of(
+        rows: Vec<f64>,
+        columns: Vec<f64>,
+        forced: Vec<usize>,
+        mismatch: impl Fn(usize, usize) -> f32,
+    ) -> Self {
+        let mut table = Self::empty(rows, columns, forced);
+        let count = table.column_count();
+        for row in 0..table.row_count() {
+            let begin = table.values.len();
+            table.values.extend((0..count).map(|column| mismatch(row, column)));
+            for _ in 1..TURNS {
+                table.values.extend_from_within(begin..begin + count);
+            }
+            table.windows.push(Window {
+                columns: 0..TURNS * count,
+                begin,
+            });
+        }
+        table
+    }
+
     fn empty(rows: Vec<f64>, columns: Vec<f64>, forced: Vec<usize>) -> Self {
         Self {
             values: Vec::new(),

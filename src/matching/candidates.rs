@@ -1,0 +1,175 @@
+//! Matches by what is drawn, in two steps with a registration between them.
+//!
+//! [`RingCandidates::new`] proposes matches of every pose to the reference (module `drawn`); whoever knows where the reference's places are
+//! in the other poses chooses among them, and [`RingCandidates::settled`] moves every row there, along the outline.
+
+use rayon::prelude::*;
+
+use super::coarse::Form;
+use super::drawn::{Drawn, DrawnMatch, match_drawn};
+use super::frame::{Model, ModelCurve};
+use super::landmark::{Landmark, validated};
+use super::n_way::{self, StarMatch};
+use super::pair::{self, Pin};
+use super::{MatchError, MatchOptions, RingMatch};
+use crate::appearance::Profile;
+use crate::math::Point;
+use crate::outline::Ring;
+
+/// How many matches of a pose are proposed.
+const MOST_CANDIDATES: usize = 4;
+/// Candidates whose cost exceeds the least by more than this factor and this difference are not proposed.
+const CANDIDATE_MARGIN: f32 = 1.5;
+const CANDIDATE_COST: f32 = 0.1;
+/// How far a row may move from where its candidate has it, in perimeters.
+const SETTLE_REACH: f64 = 0.03;
+
+/// Proposed matches of N closed curves to one of them.
+#[derive(Debug, Clone)]
+pub struct RingCandidates {
+    forms: Vec<Form>,
+    reference: usize,
+    given: Vec<Landmark>,
+    landmarks: Vec<Landmark>,
+    star: StarMatch,
+    /// By pose.
+    proposed: Vec<Vec<DrawnMatch>>,
+}
+
+impl RingCandidates {
+    /// Proposes matches; `profiles` say what is drawn inside each ring, from its parameter 0 on.
+    ///
+    /// # Errors
+    /// As [`match_rings`](super::match_rings).
+    pub fn new(
+        rings: &[Ring],
+        profiles: &[Profile],
+        landmarks: &[Landmark],
+        options: &MatchOptions,
+    ) -> Result<Self, MatchError> {
+        let mut landmarks = validated(landmarks, rings.len())?;
+        let forms = n_way::forms(rings, options)?;
+        let reference = options.reference.unwrap_or_else(|| n_way::most_central(&forms));
+        let given = landmarks.clone();
+        n_way::carry_to_reference(&forms, reference, &mut landmarks)?;
+        let star = n_way::unmatched(&forms, reference, &landmarks);
+        let drawn = |pose: usize| Drawn {
+            form: &forms[pose],
+            profile: &profiles[pose],
+        };
+        let proposed = (0..forms.len().min(profiles.len()))
+            .into_par_iter()
+            .map(|pose| {
+                if pose == reference {
+                    return Ok(Vec::new());
+                }
+                let mut found = match_drawn(
+                    &star.frame,
+                    &drawn(reference),
+                    &drawn(pose),
+                    &star.pins[pose],
+                    MOST_CANDIDATES,
+                );
+                let least = found.iter().map(|matched| matched.cost).fold(f32::INFINITY, f32::min);
+                found.retain(|matched| matched.cost <= CANDIDATE_MARGIN * least + CANDIDATE_COST);
+                if found.is_empty() {
+                    Err(MatchError::NoMatch { pose })
+                } else {
+                    Ok(found)
+                }
+            })
+            .collect::<Result<Vec<_>, MatchError>>()?;
+        Ok(Self {
+            forms,
+            reference,
+            given,
+            landmarks,
+            star,
+            proposed,
+        })
+    }
+
+    /// The pose that the others are matched to.
+    #[must_use]
+    pub fn reference(&self) -> usize {
+        self.reference
+    }
+
+    /// How many matches of `pose` are proposed, cheapest first; none of the reference.
+    #[must_use]
+    pub fn count(&self, pose: usize) -> usize {
+        self.proposed.get(pose).map_or(0, Vec::len)
+    }
+
+    /// Corresponding points of the reference and of `pose` by its match number `candidate`, in source units and in order.
+    #[must_use]
+    pub fn pairs(&self, pose: usize, candidate: usize) -> Option<(Vec<Point>, Vec<Point>)> {
+        let matched = self.proposed.get(pose)?.get(candidate)?;
+        let points = |pose: usize, parameters: &[f64]| {
+            let curve = &self.forms[pose].curve;
+            parameters.iter().map(|t| curve.in_source(curve.at(*t))).collect()
+        };
+        Some((
+            points(self.reference, &self.star.frame.rows),
+            points(pose, &matched.parameters),
+        ))
+    }
+
+    /// The match that begins with candidate number `chosen[pose]` of every pose and takes each row to the place of the outline nearest to
+    /// where `carried` takes the reference's point; landmarks stay. Where it knows nothing, the row stays.
+    ///
+    /// # Errors
+    /// As [`match_rings`](super::match_rings).
+    pub fn settled(
+        mut self,
+        rings: &[Ring],
+        chosen: &[usize],
+        options: &MatchOptions,
+        carried: &(dyn Fn(usize, Point) -> Option<Point> + Sync),
+    ) -> Result<RingMatch, MatchError> {
+        let StarMatch { frame, pins, matches } = &mut self.star;
+        let reference = &self.forms[self.reference];
+        let places: Vec<Point> = (frame.rows.iter())
+            .map(|t| reference.curve.in_source(reference.curve.at(*t)))
+            .collect();
+        let model = Model::new(vec![ModelCurve {
+            form: reference,
+            parameters: &frame.rows,
+            measured: &frame.measured,
+        }]);
+        *matches = (self.proposed.par_iter().enumerate())
+            .map(|(pose, proposed)| {
+                let candidate = proposed
+                    .get(chosen.get(pose).copied().unwrap_or(0))
+                    .or(proposed.first())?;
+                let form = &self.forms[pose];
+                let mut parameters = candidate.parameters.clone();
+                for (t, place) in parameters.iter_mut().zip(&places) {
+                    if let Some(wanted) = carried(pose, *place) {
+                        *t = form
+                            .curve
+                            .nearest_within(form.curve.normalised(wanted), *t, SETTLE_REACH);
+                    }
+                }
+                Some(closed(&model, form, parameters, &pins[pose]))
+            })
+            .collect();
+        n_way::assembled(
+            rings,
+            &self.forms,
+            self.reference,
+            [&self.given, &self.landmarks],
+            self.star,
+            options.mirror_hints,
+        )
+    }
+}
+
+/// The match with these parameters, made to increase and to go through the pins exactly.
+fn closed(model: &Model, form: &Form, mut parameters: Vec<f64>, pins: &[Pin]) -> pair::PairMatch {
+    pair::increasing(&mut parameters, pins);
+    pair::limited(&mut parameters, pins);
+    let mut matched = pair::measured(model, form, parameters);
+    n_way::through_pins(&mut matched, pins);
+    matched
+}

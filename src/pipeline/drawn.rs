@@ -1,0 +1,140 @@
+//! Outlines matched and interiors registered by what is drawn.
+
+use rayon::prelude::*;
+
+use super::PipelineError;
+use super::boundaries::{Matched, match_refusal, order_holes};
+use crate::appearance::{Appearance, Profile};
+use crate::compatible::Guide;
+use crate::input::Drawing;
+use crate::matching::{Landmark, MatchError, MatchOptions, MirrorHints, RingCandidates, RingMatch};
+use crate::math::Point;
+use crate::outline::{ArcLength, Outline, Ring};
+use crate::registration::{Registration, RingPairs, register};
+
+/// Samples of a profile: one a row of a match.
+const PROFILE_SAMPLES: usize = 512;
+
+/// Where the reference's places are in the other poses.
+#[derive(Debug, Clone)]
+pub(super) struct RegistrationGuide {
+    pub(super) reference: usize,
+    pub(super) registration: Registration,
+}
+
+impl Guide for RegistrationGuide {
+    fn reference(&self) -> usize {
+        self.reference
+    }
+
+    fn carried(&self, pose: usize, place: Point) -> Option<Point> {
+        self.registration.carried(pose, place)
+    }
+}
+
+/// The appearances of some drawings.
+pub(super) fn appearances(drawings: &[Drawing]) -> Vec<Appearance> {
+    drawings.par_iter().map(Appearance::new).collect()
+}
+
+/// Matches all rings and registers the interiors. `inside` are pairs of points inside that correspond for certain: #points x #poses.
+pub(super) fn match_by_drawing(
+    names: &[String],
+    outlines: &mut [Outline],
+    appearances: &[Appearance],
+    landmarks: &[Landmark],
+    inside: &[Vec<Option<Point>>],
+    mut options: MatchOptions,
+) -> Result<(Matched, RegistrationGuide), PipelineError> {
+    let refusal = |error: MatchError| match_refusal(names, error);
+    let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
+    let candidates = proposed(&outer, appearances, landmarks, &options).map_err(refusal)?;
+    let reference = candidates.reference();
+    let poses = 0..outlines.len();
+    let beginnings: Vec<Vec<RingPairs>> = poses
+        .clone()
+        .map(|pose| {
+            (0..candidates.count(pose))
+                .filter_map(|candidate| candidates.pairs(pose, candidate).map(|pair| vec![pair]))
+                .collect()
+        })
+        .collect();
+    let arcs: Vec<ArcLength> = outer.iter().map(ArcLength::new).collect();
+    let on_outline = landmarks.iter().map(|landmark| -> Vec<Option<Point>> {
+        let places = landmark.at.iter().zip(&arcs);
+        places.map(|(t, arc)| t.map(|t| arc.at(t))).collect()
+    });
+    let known: Vec<Vec<Option<Point>>> = on_outline.chain(inside.iter().cloned()).collect();
+    let pins: Vec<Vec<[Point; 2]>> = poses
+        .map(|pose| {
+            known
+                .iter()
+                .filter_map(|at| Some([at[reference]?, at[pose]?]))
+                .collect()
+        })
+        .collect();
+    let (registration, chosen) = register(appearances.to_vec(), reference, &beginnings, &pins)
+        .map_err(|error| PipelineError::stage(names, Some(reference), error))?;
+    let carried = |pose: usize, place: Point| registration.carried(pose, place);
+    let first = candidates
+        .settled(&outer, &chosen, &options, &carried)
+        .map_err(refusal)?;
+    order_holes(outlines, reference)?;
+    let mut matched = Matched {
+        reference,
+        correspondences: vec![first.correspondence],
+        outer: first.report,
+        holes: Vec::new(),
+    };
+    options.reference = Some(reference);
+    options.mirror_hints = MirrorHints::Skip;
+    for hole in 0..outlines.first().map_or(0, |outline| outline.holes().len()) {
+        let rings: Vec<Ring> = outlines.iter().map(|outline| outline.holes()[hole].clone()).collect();
+        let of_hole = match_hole(&rings, appearances, &options, &carried).map_err(refusal)?;
+        matched.correspondences.push(of_hole.correspondence);
+        matched.holes.push(of_hole.report);
+    }
+    Ok((
+        matched,
+        RegistrationGuide {
+            reference,
+            registration,
+        },
+    ))
+}
+
+fn proposed(
+    rings: &[Ring],
+    appearances: &[Appearance],
+    landmarks: &[Landmark],
+    options: &MatchOptions,
+) -> Result<RingCandidates, MatchError> {
+    let profiles: Vec<Profile> = (rings.par_iter().zip(appearances))
+        .flat_map_iter(|(ring, appearance)| appearance.profiles(&[ring], PROFILE_SAMPLES))
+        .collect();
+    RingCandidates::new(rings, &profiles, landmarks, options)
+}
+
+/// The match of a hole that fits the registration best.
+fn match_hole(
+    rings: &[Ring],
+    appearances: &[Appearance],
+    options: &MatchOptions,
+    carried: &(dyn Fn(usize, Point) -> Option<Point> + Sync),
+) -> Result<RingMatch, MatchError> {
+    let candidates = proposed(rings, appearances, &[], options)?;
+    let missed = |pose: usize, candidate: usize| -> f64 {
+        let Some((reference, own)) = candidates.pairs(pose, candidate) else {
+            return f64::INFINITY;
+        };
+        let pairs = reference.iter().zip(&own);
+        pairs.filter_map(|(a, b)| Some((carried(pose, *a)? - b).norm())).sum()
+    };
+    let chosen: Vec<usize> = (0..rings.len())
+        .map(|pose| {
+            let by_distance = |a: &usize, b: &usize| missed(pose, *a).total_cmp(&missed(pose, *b));
+            (0..candidates.count(pose)).min_by(by_distance).unwrap_or(0)
+        })
+        .collect();
+    candidates.settled(rings, &chosen, options, carried)
+}

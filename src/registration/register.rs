@@ -1,0 +1,296 @@
+//! All poses registered to the reference.
+
+use rayon::prelude::*;
+
+use super::lattice::Lattice;
+use super::outline::{RingPair, spread};
+use super::rigid::{Rigid, Targets};
+use super::template::{Fit, MOST_DIFFERENCE, Template, Window};
+use crate::appearance::{Appearance, ByteImage, PIXELS_PER_UNIT};
+use crate::math::{Matrix, Point};
+use crate::solve::SolveError;
+
+/// The lattice's spacing, in figure units.
+const SPACING: f64 = 0.022;
+
+/// One level of the search. Lengths are in figure units but for the blur, which is in working pixels.
+struct Level {
+    deviation_px: f32,
+    patch_radius: f64,
+    reach: f64,
+    step: f64,
+    stiffness: f64,
+    temperature: f32,
+    iterations: usize,
+}
+
+/// From coarse to fine.
+const LEVELS: [Level; 5] = [
+    level(5.0, 0.060, 0.060, 0.0100, 300.0, 0.030, 4),
+    level(3.5, 0.045, 0.036, 0.0060, 150.0, 0.027, 4),
+    level(2.2, 0.034, 0.020, 0.0034, 75.0, 0.0225, 3),
+    level(1.3, 0.026, 0.010, 0.0018, 37.5, 0.018, 3),
+    level(0.9, 0.020, 0.005, 0.0011, 22.5, 0.015, 2),
+];
+
+const fn level(
+    deviation_px: f32,
+    patch_radius: f64,
+    reach: f64,
+    step: f64,
+    stiffness: f64,
+    temperature: f32,
+    iterations: usize,
+) -> Level {
+    Level {
+        deviation_px,
+        patch_radius,
+        reach,
+        step,
+        stiffness,
+        temperature,
+        iterations,
+    }
+}
+
+/// A beginning is first made this stiff, beside a trust of 1 in where it is: folds that the outlines left come out.
+const FIRST_STIFFNESS: f64 = 30.0;
+const FIRST_ITERATIONS: usize = 10;
+/// Trust falls by a factor e when the best place in the window differs by this share of [`MOST_DIFFERENCE`].
+const DOUBT: f32 = 0.25;
+/// The trust in a given point, beside about 1 of a vertex whose place is clear.
+const PIN_TRUST: f64 = 3e3;
+
+/// A level ends when vertices move by less than this share of its step in the mean.
+const STILL: f64 = 0.1;
+
+/// Why drawings could not be registered.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RegistrationError {
+    /// The figure is thinner than a working pixel everywhere.
+    #[error("the figure of the reference is too thin to be compared")]
+    NoFigure,
+    /// The rigid system could not be solved.
+    #[error("the registration's system could not be solved: {0}")]
+    Solve(#[from] SolveError),
+}
+
+/// Outlines in correspondence, as a beginning: for every ring, points of the reference and of the pose in source units.
+pub type RingPairs = Vec<(Vec<Point>, Vec<Point>)>;
+
+/// Where the reference's places are in every pose.
+#[derive(Debug, Clone)]
+pub struct Registration {
+    lattice: Lattice,
+    reference: Appearance,
+    poses: Vec<Option<RegisteredPose>>,
+}
+
+#[derive(Debug, Clone)]
+struct RegisteredPose {
+    appearance: Appearance,
+    places: Vec<Point>,
+    rotations: Vec<Point>,
+    residual: f64,
+}
+
+impl Registration {
+    /// Where a place of the reference is in `pose`, in source units; `None` for the reference itself and poses that were not registered.
+    #[must_use]
+    pub fn carried(&self, pose: usize, place: Point) -> Option<Point> {
+        let registered = self.poses.get(pose)?.as_ref()?;
+        let p = self.reference.to_pixels(place);
+        let carried = self.lattice.carried(&registered.places, &registered.rotations, p)?;
+        Some(registered.appearance.to_source(carried))
+    }
+
+    /// How much the drawing of `pose` differs from what the reference shows at the same places: 0 for equal drawings, at most 1.2.
+    #[must_use]
+    pub fn residual(&self, pose: usize) -> Option<f64> {
+        Some(self.poses.get(pose)?.as_ref()?.residual)
+    }
+}
+
+/// Registers every pose of `appearances` but the reference, and says for each which beginning explained the drawing best. `beginnings` has for each at least one beginning, `pins` pairs of points
+/// (of the reference and of the pose, in source units) that correspond for certain.
+///
+/// # Errors
+/// [`RegistrationError`] if the reference has no figure.
+pub fn register(
+    appearances: Vec<Appearance>,
+    reference: usize,
+    beginnings: &[Vec<RingPairs>],
+    pins: &[Vec<[Point; 2]>],
+) -> Result<(Registration, Vec<usize>), RegistrationError> {
+    let own = &appearances[reference];
+    let lattice = Lattice::new(&own.mask(), own.size()[0], SPACING * PIXELS_PER_UNIT);
+    if lattice.points.is_empty() {
+        return Err(RegistrationError::NoFigure);
+    }
+    let templates: Vec<Template> = (LEVELS.par_iter())
+        .map(|level| {
+            Template::new(
+                &lattice,
+                &own.blurred(level.deviation_px),
+                level.patch_radius * PIXELS_PER_UNIT,
+            )
+        })
+        .collect();
+    let registered: Vec<Option<(Vec<Point>, f64, usize)>> = (0..appearances.len())
+        .into_par_iter()
+        .map(|pose| {
+            let beginnings = beginnings.get(pose).map_or(&[][..], Vec::as_slice);
+            if pose == reference || beginnings.is_empty() {
+                return Ok(None);
+            }
+            let pair = Pair::new(
+                &lattice,
+                own,
+                &appearances[pose],
+                pins.get(pose).map_or(&[], Vec::as_slice),
+            );
+            pair.registered(&templates, beginnings).map(Some)
+        })
+        .collect::<Result<_, RegistrationError>>()?;
+    let chosen = (registered.iter())
+        .map(|registered| registered.as_ref().map_or(0, |(.., chosen)| *chosen))
+        .collect();
+    let poses = (registered.into_iter().zip(&appearances))
+        .map(|(registered, appearance)| {
+            registered.map(|(places, residual, _)| RegisteredPose {
+                rotations: Rigid::new(&lattice, 1.0).rotations(&places, 0),
+                appearance: appearance.clone(),
+                places,
+                residual,
+            })
+        })
+        .collect();
+    let registration = Registration {
+        reference: own.clone(),
+        lattice,
+        poses,
+    };
+    Ok((registration, chosen))
+}
+
+/// The reference and one other pose.
+struct Pair<'a> {
+    lattice: &'a Lattice,
+    reference: &'a Appearance,
+    pose: &'a Appearance,
+    /// Points that correspond for certain, in working pixels.
+    pins: Vec<[Point; 2]>,
+}
+
+impl<'a> Pair<'a> {
+    fn new(lattice: &'a Lattice, reference: &'a Appearance, pose: &'a Appearance, pins: &[[Point; 2]]) -> Self {
+        Self {
+            lattice,
+            reference,
+            pose,
+            pins: (pins.iter())
+                .map(|[a, b]| [reference.to_pixels(*a), pose.to_pixels(*b)])
+                .collect(),
+        }
+    }
+
+    /// The places of the vertices, how much the drawings still differ there, and from which beginning.
+    fn registered(
+        &self,
+        templates: &[Template],
+        beginnings: &[RingPairs],
+    ) -> Result<(Vec<Point>, f64, usize), RegistrationError> {
+        let rigid = Rigid::new(self.lattice, 1.0);
+        let here = Window::here();
+        let image = ByteImage::new(&self.pose.blurred(LEVELS[0].deviation_px), here.reach);
+        let mut best: Option<(f64, Vec<Point>, usize)> = None;
+        for (number, beginning) in beginnings.iter().enumerate() {
+            let places = self.begun(&rigid, beginning)?;
+            let difference = if beginnings.len() > 1 {
+                let rotations = rigid.rotations(&places, 1);
+                mean_residual(&templates[0].fits(&image, &places, &rotations, &here, 1.0))
+            } else {
+                0.0
+            };
+            if best.as_ref().is_none_or(|(least, ..)| difference < *least) {
+                best = Some((difference, places, number));
+            }
+        }
+        let Some((_, mut places, number)) = best else {
+            return Err(RegistrationError::NoFigure);
+        };
+        let mut residual = 0.0;
+        for (level, template) in LEVELS.iter().zip(templates) {
+            let fits;
+            (places, fits) = self.level(level, template, &rigid, places)?;
+            residual = mean_residual(&fits);
+        }
+        Ok((places, residual, number))
+    }
+
+    /// The vertices where outlines in correspondence have them.
+    fn begun(&self, rigid: &Rigid, beginning: &RingPairs) -> Result<Vec<Point>, RegistrationError> {
+        let rings: Vec<RingPair> = (beginning.iter())
+            .map(|(reference, pose)| RingPair {
+                reference: reference.iter().map(|p| self.reference.to_pixels(*p)).collect(),
+                pose: pose.iter().map(|p| self.pose.to_pixels(*p)).collect(),
+            })
+            .collect();
+        let places = spread(self.lattice, rigid, 1.0, &rings)?;
+        let everywhere = vec![Matrix::identity(); places.len()];
+        let targets = Targets {
+            places: &places,
+            trust: &everywhere,
+        };
+        Ok(rigid.solve(&places, &targets, FIRST_STIFFNESS, FIRST_ITERATIONS)?)
+    }
+
+    fn level(
+        &self,
+        level: &Level,
+        template: &Template,
+        rigid: &Rigid,
+        mut places: Vec<Point>,
+    ) -> Result<(Vec<Point>, Vec<Fit>), RegistrationError> {
+        let window = Window::new(level.reach * PIXELS_PER_UNIT, level.step * PIXELS_PER_UNIT);
+        let image = ByteImage::new(&self.pose.blurred(level.deviation_px), window.reach);
+        let floor = Matrix::identity() * (0.25 * window.step * window.step);
+        let mut fits = Vec::new();
+        for _ in 0..level.iterations {
+            let rotations = rigid.rotations(&places, 1);
+            fits = template.fits(&image, &places, &rotations, &window, level.temperature);
+            let (mut targets, mut trust) = (Vec::new(), Vec::new());
+            for (fit, place) in fits.iter().zip(&places) {
+                let confidence = f64::from(libm::expf(-fit.residual / (DOUBT * MOST_DIFFERENCE)));
+                let inverse = (fit.covariance + floor).try_inverse().unwrap_or_else(Matrix::zeros);
+                targets.push(place + fit.displacement);
+                trust.push(inverse * confidence * self.lattice.spacing.powi(2));
+            }
+            for [from, to] in &self.pins {
+                if let Some((cell, _)) = self.lattice.cell_at(*from) {
+                    let turn = rotations[cell];
+                    let aside = Matrix::new(turn.x, -turn.y, turn.y, turn.x) * (self.lattice.points[cell] - from);
+                    targets[cell] = to + aside;
+                    trust[cell] = Matrix::identity() * PIN_TRUST;
+                }
+            }
+            let targets = Targets {
+                places: &targets,
+                trust: &trust,
+            };
+            let solved = rigid.solve(&places, &targets, level.stiffness, 6)?;
+            let moved = solved.iter().zip(&places).map(|(a, b)| (a - b).norm()).sum::<f64>();
+            places = solved;
+            if moved < STILL * window.step * places.len() as f64 {
+                break;
+            }
+        }
+        Ok((places, fits))
+    }
+}
+
+/// The mean over the vertices of how much their patches differ.
+fn mean_residual(fits: &[Fit]) -> f64 {
+    fits.iter().map(|fit| f64::from(fit.residual)).sum::<f64>() / fits.len().max(1) as f64
+}
