@@ -25,6 +25,7 @@ mod landmarks;
 mod layer;
 mod layout;
 mod mapping;
+mod named;
 mod reach;
 mod report;
 mod shape;

@@ -18,7 +18,7 @@ use crate::outline::Ring;
 
 /// How many matches of a pose are proposed.
 const MOST_CANDIDATES: usize = 4;
-/// Candidates whose cost exceeds the least by more than this factor and this difference are not proposed.
+/// Candidates whose cost exceeds the least by more than this factor and this difference are not proposed, but for the upright one.
 const CANDIDATE_MARGIN: f32 = 1.5;
 const CANDIDATE_COST: f32 = 0.1;
 /// How far a row may move from where its candidate has it, in perimeters.
@@ -51,13 +51,13 @@ impl RingCandidates {
         let forms = n_way::forms(rings, options)?;
         let reference = options.reference.unwrap_or_else(|| n_way::most_central(&forms));
         let given = landmarks.clone();
-        n_way::carry_to_reference(&forms, reference, &mut landmarks)?;
+        n_way::carry_to_reference(&forms, reference, &mut landmarks, options)?;
         let star = n_way::unmatched(&forms, reference, &landmarks);
         let drawn = |pose: usize| Drawn {
             form: &forms[pose],
-            profile: &profiles[pose],
+            profile: profiles.get(pose),
         };
-        let proposed = (0..forms.len().min(profiles.len()))
+        let proposed = (0..forms.len())
             .into_par_iter()
             .map(|pose| {
                 if pose == reference {
@@ -65,13 +65,17 @@ impl RingCandidates {
                 }
                 let mut found = match_drawn(
                     &star.frame,
-                    &drawn(reference),
-                    &drawn(pose),
+                    drawn(reference),
+                    drawn(pose),
                     &star.pins[pose],
                     MOST_CANDIDATES,
+                    options.turn_of(pose),
                 );
                 let least = found.iter().map(|matched| matched.cost).fold(f32::INFINITY, f32::min);
-                found.retain(|matched| matched.cost <= CANDIDATE_MARGIN * least + CANDIDATE_COST);
+                let mut is_first = true;
+                found.retain(|matched| {
+                    std::mem::take(&mut is_first) || matched.cost <= CANDIDATE_MARGIN * least + CANDIDATE_COST
+                });
                 if found.is_empty() {
                     Err(MatchError::NoMatch { pose })
                 } else {
@@ -95,7 +99,7 @@ impl RingCandidates {
         self.reference
     }
 
-    /// How many matches of `pose` are proposed, cheapest first; none of the reference.
+    /// How many matches of `pose` are proposed, the one that turns it least first; none of the reference.
     #[must_use]
     pub fn count(&self, pose: usize) -> usize {
         self.proposed.get(pose).map_or(0, Vec::len)

@@ -5,6 +5,8 @@
 //! here.
 //!
 //! 1. A dynamic program over about a hundred samples from every start (module `start`), then a finer one around the cheapest.
+//!    One candidate more is the cheapest match that hardly turns the drawing: an ellipse squashed from tall to wide is the same ellipse turned,
+//!    and it takes what is drawn inside, or the habit of animators, to tell.
 //! 2. The cost of pairing two samples is the difference in turning over three windows, in what is drawn at three depths, and a little of the
 //!    angle between the directions of the outlines: a drawing is rather upright than turned.
 //!
@@ -12,13 +14,14 @@
 //! again are not the same; no refit, which would pull limbs that turn to where a smooth map has them.
 
 use super::coarse::{CoarseMatch, Form};
+use super::curve::around;
 use super::elastic::{MismatchTable, cheapest_path};
 use super::frame::Frame;
-use super::monotone::CyclicMap;
 use super::pair::{Pin, band_around, best_path, pinned_columns};
 use super::start::cheapest_paths;
 use crate::appearance::{PROFILE_CHANNELS, Profile};
-use crate::math::{Point, angle};
+use crate::math::{Point, angle, rotation};
+use crate::outline::parameter_gap;
 
 /// Half-windows of the turning, in perimeters.
 const WINDOWS: [f64; 3] = [0.008, 0.02, 0.045];
@@ -27,6 +30,8 @@ const WINDOWS: [f64; 3] = [0.008, 0.02, 0.045];
 const TURNING_COST: f32 = 0.55;
 const DRAWN_COST: f32 = 3.9;
 const DIRECTION_COST: f32 = 0.08;
+/// The last for the candidate that stays upright.
+const UPRIGHT_COST: f32 = 0.5;
 /// Differences in what is drawn count no more than this at any depth.
 const MOST_DIFFERENCE: f32 = 0.6;
 /// Rows between two samples of the first and of the second program.
@@ -38,10 +43,11 @@ const START_REACH: usize = 6;
 /// Starts nearer than this, in perimeters, are one.
 const APART: f64 = 0.03;
 
-/// A form with what is drawn inside it.
+/// A form with what is drawn inside it, if anything is.
+#[derive(Clone, Copy)]
 pub(super) struct Drawn<'a> {
     pub(super) form: &'a Form,
-    pub(super) profile: &'a Profile,
+    pub(super) profile: Option<&'a Profile>,
 }
 
 /// A candidate: the pose's parameter by row.
@@ -51,94 +57,133 @@ pub(super) struct DrawnMatch {
     pub(super) cost: f32,
 }
 
-/// Matches with clearly different starts, cheapest first, at most `most`; with pins the one that goes through them.
+/// The upright match, then others with clearly different starts, cheapest first, at most `most` in all; with pins the one that goes through
+/// them. Upright is a drawing that is turned by `expected_rad` from the reference.
 pub(super) fn match_drawn(
     frame: &Frame,
-    reference: &Drawn,
-    pose: &Drawn,
+    reference: Drawn,
+    pose: Drawn,
     pins: &[Pin],
     most: usize,
+    expected_rad: f64,
 ) -> Vec<DrawnMatch> {
-    let by_row = |map: &CyclicMap, cost: f32| DrawnMatch {
-        parameters: frame.rows.iter().map(|t| map.at(*t)).collect(),
-        cost,
+    let task = Task {
+        frame,
+        reference,
+        pose,
+        expected_rad,
     };
-    if !pins.is_empty() {
-        let first = pins[0].row;
-        let rows: Vec<f64> = around(&frame.rows, first, FINE_STRIDE);
-        let columns: Vec<f64> = (pinned_columns(pins, frame.rows.len()).into_iter())
-            .step_by(FINE_STRIDE)
-            .collect();
-        let forced = pins.iter().skip(1).map(|pin| (pin.row - first) / FINE_STRIDE).collect();
-        let table = table(reference, pose, rows, columns, forced);
-        let path = cheapest_path(&table, 0, &table.reachable(0));
-        return path
-            .map(|path| by_row(&CoarseMatch::from_path(&table, &path).map, path.cost))
-            .into_iter()
-            .collect();
+    let found = match pins.first() {
+        Some(first) => task.pinned(pins, first.row).into_iter().collect(),
+        None => task.candidates(most),
+    };
+    let by_row = |matched: &CoarseMatch| DrawnMatch {
+        parameters: frame.rows.iter().map(|t| matched.map.at(*t)).collect(),
+        cost: matched.cost,
+    };
+    found.iter().map(by_row).collect()
+}
+
+/// Two forms to be matched.
+struct Task<'a> {
+    frame: &'a Frame,
+    reference: Drawn<'a>,
+    pose: Drawn<'a>,
+    expected_rad: f64,
+}
+
+impl Task<'_> {
+    /// The cheapest match through the pins, the first of which is at `first_row`.
+    fn pinned(&self, pins: &[Pin], first_row: usize) -> Option<CoarseMatch> {
+        let rows = around(&self.frame.rows, first_row, FINE_STRIDE);
+        let columns = pinned_columns(pins, self.frame.rows.len());
+        let columns = columns.into_iter().step_by(FINE_STRIDE).collect();
+        let forced = pins.iter().skip(1);
+        let forced = forced.map(|pin| (pin.row - first_row) / FINE_STRIDE).collect();
+        let table = self.table(rows, columns, forced, DIRECTION_COST);
+        let path = cheapest_path(&table, 0, &table.reachable(0))?;
+        Some(CoarseMatch::from_path(&table, &path))
     }
-    let tables = [COARSE_STRIDE, FINE_STRIDE].map(|stride| {
-        let rows = around(&frame.rows, 0, stride);
-        let columns = pose.form.even_parameters(rows.len());
-        table(reference, pose, rows, columns, Vec::new())
-    });
-    let [coarse, fine] = &tables;
-    let apart = ((APART * coarse.row_count() as f64).round() as usize).max(1);
-    (cheapest_paths(coarse, apart, most).iter())
-        .map(|path| {
-            let first = CoarseMatch::from_path(coarse, path);
-            let second = best_path(fine, &band_around(fine, &first.map, REACH), START_REACH);
+
+    fn candidates(&self, most: usize) -> Vec<CoarseMatch> {
+        let (coarse, fine) = (
+            self.even_table(COARSE_STRIDE, DIRECTION_COST),
+            self.even_table(FINE_STRIDE, DIRECTION_COST),
+        );
+        let apart = ((APART * coarse.row_count() as f64).round() as usize).max(1);
+        let upright = cheapest_paths(&self.even_table(COARSE_STRIDE, UPRIGHT_COST), apart, 1);
+        let others = if most > 1 {
+            cheapest_paths(&coarse, apart, most)
+        } else {
+            Vec::new()
+        };
+        let start = |matched: &CoarseMatch| matched.map.at(self.frame.rows[0]);
+        let mut found: Vec<CoarseMatch> = Vec::new();
+        for path in upright.iter().chain(&others) {
+            let first = CoarseMatch::from_path(&coarse, path);
+            let second = best_path(&fine, &band_around(&fine, &first.map, REACH), START_REACH);
             let best = second.unwrap_or(first);
-            by_row(&best.map, best.cost)
+            if (found.iter()).all(|other| parameter_gap(start(other), start(&best)) >= APART) {
+                found.push(best);
+            }
+        }
+        found.truncate(most);
+        found
+    }
+
+    /// The table of every `stride`-th row with as many even samples of the pose.
+    fn even_table(&self, stride: usize, direction_cost: f32) -> MismatchTable {
+        let rows = around(&self.frame.rows, 0, stride);
+        let columns = self.pose.form.even_parameters(rows.len());
+        self.table(rows, columns, Vec::new(), direction_cost)
+    }
+
+    fn table(&self, rows: Vec<f64>, columns: Vec<f64>, forced: Vec<usize>, direction_cost: f32) -> MismatchTable {
+        let own = samples(self.reference, &rows, self.expected_rad);
+        let others = samples(self.pose, &columns, 0.0);
+        MismatchTable::of(rows, columns, forced, |row, column| {
+            mismatch(&own[row], &others[column], direction_cost)
         })
-        .collect()
-}
-
-/// Every `stride`-th of the rows from `first` on, once around.
-fn around(rows: &[f64], first: usize, stride: usize) -> Vec<f64> {
-    super::curve::around(rows, first, stride)
-}
-
-fn table(reference: &Drawn, pose: &Drawn, rows: Vec<f64>, columns: Vec<f64>, forced: Vec<usize>) -> MismatchTable {
-    let (own, others) = (samples(reference, &rows), samples(pose, &columns));
-    MismatchTable::of(rows, columns, forced, |row, column| {
-        mismatch(&own[row], &others[column])
-    })
+    }
 }
 
 /// What is compared at one parameter.
 struct Sample {
     turning_rad: [f32; WINDOWS.len()],
-    drawn: [f32; PROFILE_CHANNELS],
+    drawn: Option<[f32; PROFILE_CHANNELS]>,
     direction: [f32; 2],
 }
 
-fn samples(drawn: &Drawn, parameters: &[f64]) -> Vec<Sample> {
+/// The samples of a form turned by `turn_rad`.
+fn samples(drawn: Drawn, parameters: &[f64], turn_rad: f64) -> Vec<Sample> {
     let curve = &drawn.form.curve;
+    let turn = rotation(turn_rad);
     let sample = |&t: &f64| {
         let here = curve.at(t);
         let turning = |window: f64| angle::between(here - curve.at(t - window), curve.at(t + window) - here) as f32;
-        let chord = curve.at(t + WINDOWS[0]) - curve.at(t - WINDOWS[0]);
+        let chord = turn * (curve.at(t + WINDOWS[0]) - curve.at(t - WINDOWS[0]));
         let direction = match chord.norm() {
             length if length > 0.0 => chord / length,
             _ => Point::zeros(),
         };
         Sample {
             turning_rad: WINDOWS.map(turning),
-            drawn: drawn.profile.at(t),
+            drawn: drawn.profile.map(|profile| profile.at(t)),
             direction: [direction.x as f32, direction.y as f32],
         }
     };
     parameters.iter().map(sample).collect()
 }
 
-fn mismatch(a: &Sample, b: &Sample) -> f32 {
+fn mismatch(a: &Sample, b: &Sample, direction_cost: f32) -> f32 {
     let turning: f32 = (a.turning_rad.iter().zip(b.turning_rad))
         .map(|(a, b)| (a - b).abs())
         .sum();
     let [[ax, ay], [bx, by]] = [a.direction, b.direction];
     let direction = libm::atan2f(ax * by - ay * bx, ax * bx + ay * by).abs();
-    TURNING_COST * turning
-        + DRAWN_COST * Profile::difference(&a.drawn, &b.drawn, MOST_DIFFERENCE)
-        + DIRECTION_COST * direction
+    let drawn = match (&a.drawn, &b.drawn) {
+        (Some(a), Some(b)) => Profile::difference(a, b, MOST_DIFFERENCE),
+        _ => 0.0,
+    };
+    TURNING_COST * turning + DRAWN_COST * drawn + direction_cost * direction
 }

@@ -18,10 +18,11 @@ use rayon::prelude::*;
 
 use super::coarse::{Form, coarse_matches};
 use super::curve::Samples;
+use super::drawn::{Drawn, match_drawn};
 use super::frame::{Frame, Model, ModelCurve};
 use super::landmark::{Landmark, validated};
 use super::monotone::CyclicMap;
-use super::pair::{PairMatch, Pin, match_pose};
+use super::pair::{self, PairMatch, Pin, match_pose};
 use super::reflection::{MIRROR_SAMPLES, reflection_ratio};
 use super::{Correspondence, MatchError, SalientPoint};
 use crate::math::wrapped;
@@ -46,6 +47,16 @@ pub struct MatchOptions {
     pub reference: Option<usize>,
     /// Whether poses are also compared with their reflections. Default: they are.
     pub mirror_hints: MirrorHints,
+    /// By how much every pose is expected to be turned from the reference, in radians: ties go to the match that comes nearest. Default: not
+    /// at all. The holes of a drawing are expected to turn with it.
+    pub turns_rad: Vec<f64>,
+}
+
+impl MatchOptions {
+    /// By how much `pose` is expected to be turned.
+    pub(super) fn turn_of(&self, pose: usize) -> f64 {
+        self.turns_rad.get(pose).copied().unwrap_or(0.0)
+    }
 }
 
 /// Whether poses are compared with their reflections.
@@ -65,6 +76,8 @@ pub struct RingMatch {
     pub reference: usize,
     /// The corresponding parameters.
     pub correspondence: Correspondence,
+    /// By how much every pose is turned from the reference as a whole, in radians.
+    pub turns_rad: Vec<f64>,
     /// How it came about.
     pub report: MatchReport,
 }
@@ -130,16 +143,16 @@ pub(crate) fn match_rings_beside<T: Send>(
     let forms = forms(rings, options)?;
     let reference = options.reference.unwrap_or_else(|| most_central(&forms));
     let given = landmarks.clone();
-    carry_to_reference(&forms, reference, &mut landmarks)?;
+    carry_to_reference(&forms, reference, &mut landmarks, options)?;
 
     let all: Vec<usize> = (0..count).collect();
-    let to_reference = || match_some(&forms, reference, &landmarks, &all);
+    let to_reference = || match_some(&forms, reference, &landmarks, &all, options);
     let (star, beside) = if count < 3 {
         let (star, beside) = rayon::join(to_reference, beside);
         (star?, beside)
     } else {
         let mut star = to_reference()?;
-        let ((), beside) = rayon::join(|| match_jointly(&forms, &mut star), beside);
+        let ((), beside) = rayon::join(|| match_jointly(&forms, &mut star, options), beside);
         (star, beside)
     };
     let matched = assembled(
@@ -218,8 +231,15 @@ pub(super) fn assembled(
             }
         })
         .collect();
+    let turns_rad = (0..count)
+        .map(|pose| match &matches[pose] {
+            Some(matched) => pair::turn_rad(&forms[reference], &frame.rows, &forms[pose], &matched.parameters),
+            None => 0.0,
+        })
+        .collect();
     Ok(RingMatch {
         reference,
+        turns_rad,
         correspondence: Correspondence::new(rows)?,
         report: MatchReport { poses },
     })
@@ -258,6 +278,7 @@ pub(super) fn carry_to_reference(
     forms: &[Form],
     reference: usize,
     landmarks: &mut [Landmark],
+    options: &MatchOptions,
 ) -> Result<(), MatchError> {
     for missing in 0..landmarks.len() {
         let having: Vec<(usize, f64)> = (0..forms.len())
@@ -267,7 +288,7 @@ pub(super) fn carry_to_reference(
             continue;
         }
         let wanted: Vec<usize> = having.iter().map(|(pose, _)| *pose).collect();
-        let StarMatch { frame, matches, .. } = match_some(forms, reference, landmarks, &wanted)?;
+        let StarMatch { frame, matches, .. } = match_some(forms, reference, landmarks, &wanted, options)?;
         let places: Vec<f64> = having
             .iter()
             .filter_map(|(pose, t)| {
@@ -315,6 +336,7 @@ fn match_some(
     reference: usize,
     landmarks: &[Landmark],
     wanted: &[usize],
+    options: &MatchOptions,
 ) -> Result<StarMatch, MatchError> {
     let StarMatch { frame, pins, .. } = unmatched(forms, reference, landmarks);
     let model = Model::new(vec![ModelCurve {
@@ -328,7 +350,9 @@ fn match_some(
             if pose == reference || !wanted.contains(&pose) {
                 return Ok(None);
             }
-            pinned_match(&frame, &model, &forms[pose], &pins[pose], None)
+            let expected = options.turn_of(pose);
+            let upright = upright(&frame, [&forms[reference], &forms[pose]], &pins[pose], expected);
+            pinned_match(&frame, &model, &forms[pose], &pins[pose], upright.as_deref(), expected)
                 .ok_or(MatchError::NoMatch { pose })
                 .map(Some)
         })
@@ -339,7 +363,7 @@ fn match_some(
 /// Matches every pose again to all others as they stand, the reference among them, the worst matched first. One after the
 /// other: of two poses that disagree, only one has to move. Once: more rounds gain nothing, of poses that cannot agree now these
 /// win, now those.
-fn match_jointly(forms: &[Form], matched: &mut StarMatch) {
+fn match_jointly(forms: &[Form], matched: &mut StarMatch, options: &MatchOptions) {
     let StarMatch { frame, pins, matches } = matched;
     let mut order: Vec<(f64, usize)> = matches
         .iter()
@@ -365,7 +389,7 @@ fn match_jointly(forms: &[Form], matched: &mut StarMatch) {
         });
         let model = Model::new(others.collect());
         let current = matches[pose].as_ref().map(|matched| &matched.parameters[..]);
-        if let Some(again) = pinned_match(frame, &model, &forms[pose], &pins[pose], current) {
+        if let Some(again) = pinned_match(frame, &model, &forms[pose], &pins[pose], current, options.turn_of(pose)) {
             matches[pose] = Some(again);
         }
     }
@@ -385,9 +409,26 @@ fn pins(frame: &Frame, reference: usize, landmarks: &[Landmark], pose: usize) ->
     pins
 }
 
+/// The parameters of the match that turns the drawing least; none with pins, which say how it is turned.
+fn upright(frame: &Frame, [reference, pose]: [&Form; 2], pins: &[Pin], expected_rad: f64) -> Option<Vec<f64>> {
+    if !pins.is_empty() {
+        return None;
+    }
+    let [reference, pose] = [reference, pose].map(|form| Drawn { form, profile: None });
+    let found = match_drawn(frame, reference, pose, &[], 1, expected_rad);
+    found.into_iter().next().map(|matched| matched.parameters)
+}
+
 /// A match that goes through the pins exactly as given, not as rounded on the way.
-fn pinned_match(frame: &Frame, model: &Model, form: &Form, pins: &[Pin], current: Option<&[f64]>) -> Option<PairMatch> {
-    let mut matched = match_pose(frame, model, form, pins, current)?;
+fn pinned_match(
+    frame: &Frame,
+    model: &Model,
+    form: &Form,
+    pins: &[Pin],
+    current: Option<&[f64]>,
+    expected_rad: f64,
+) -> Option<PairMatch> {
+    let mut matched = match_pose(frame, model, form, pins, current, expected_rad)?;
     through_pins(&mut matched, pins);
     Some(matched)
 }

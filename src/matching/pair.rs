@@ -30,6 +30,9 @@ const CANDIDATE_MARGIN: f32 = 1.25;
 /// Guided costs within this factor and this difference count as a tie, which the smaller rotation decides: what even
 /// sampling leaves between nearly equal arms.
 const TIE_MARGIN: (f32, f32) = (1.003, 0.01);
+/// What a radian of rotation of the whole drawing costs, as much as an elastic difference: between drawings of a thing that was squashed from tall
+/// to wide there is half of this or less, between those of an animal in two postures more than three times as much.
+const TURN_COST: f64 = 0.3;
 /// Rows between two samples of the elastic match.
 const ELASTIC_STRIDE: usize = 2;
 /// How far the fine match may leave the coarse one, in perimeters.
@@ -79,12 +82,14 @@ pub(super) fn match_pose(
     pose: &Form,
     pins: &[Pin],
     current: Option<&[f64]>,
+    expected_rad: f64,
 ) -> Option<PairMatch> {
     let task = Task {
         frame,
         model,
         pose,
         pins,
+        expected_rad,
     };
     let table = task.table();
     let mut candidates = if pins.is_empty() {
@@ -93,8 +98,10 @@ pub(super) fn match_pose(
         let path = cheapest_path(&table, 0, &table.reachable(0))?;
         vec![CoarseMatch::from_path(&table, &path)]
     };
-    let least = candidates.iter().map(|c| c.cost).fold(f32::INFINITY, f32::min);
-    candidates.retain(|c| c.cost <= (CANDIDATE_MARGIN * least).max(SAMPLING_COST));
+    let cheapest = candidates.iter().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+    let (least, most_turned) = (cheapest.cost, task.rotation(cheapest));
+    let upright = |c: &CoarseMatch| least + (TURN_COST * (most_turned - task.rotation(c)).max(0.0)) as f32;
+    candidates.retain(|c| c.cost <= (CANDIDATE_MARGIN * least).max(SAMPLING_COST).max(upright(c)));
     let guided: Vec<CoarseMatch> = candidates
         .into_iter()
         .map(|candidate| task.guided(&table, candidate))
@@ -109,6 +116,8 @@ struct Task<'a> {
     model: &'a Model<'a>,
     pose: &'a Form,
     pins: &'a [Pin],
+    /// By how much the drawing is expected to be turned.
+    expected_rad: f64,
 }
 
 impl Task<'_> {
@@ -167,27 +176,27 @@ impl Task<'_> {
         path.unwrap_or(candidate)
     }
 
-    /// The cheapest match; among those that cost nearly the same, the one that turns the drawing least.
+    /// The cheapest match; among those that cost nearly the same, the one that turns the drawing least from what is expected. One that costs
+    /// more is taken instead if it turns the drawing so much less that this is worth more.
     ///
-    /// Only a shape with rotational symmetry has such ties, so that turning a drawing changes nothing for any other.
+    /// Only a shape that is nearly symmetric under a rotation has such ties, so that turning a drawing changes nothing for any other.
     fn choose(&self, candidates: Vec<CoarseMatch>) -> Option<CoarseMatch> {
         let least = candidates.iter().map(|c| c.cost).fold(f32::INFINITY, f32::min);
-        candidates
-            .into_iter()
-            .filter(|c| c.cost <= (TIE_MARGIN.0 * least + TIE_MARGIN.1).max(SAMPLING_COST))
-            .min_by(|a, b| self.rotation(a).total_cmp(&self.rotation(b)))
+        let ties = (TIE_MARGIN.0 * least + TIE_MARGIN.1).max(SAMPLING_COST);
+        let cost = |candidate: &CoarseMatch| {
+            let cost = if candidate.cost <= ties { least } else { candidate.cost };
+            f64::from(cost) + TURN_COST * self.rotation(candidate)
+        };
+        candidates.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)))
     }
 
-    /// The absolute angle of the best-fitting rotation of the match from the model's first curve, in radians.
+    /// The absolute angle, in radians, between the best-fitting rotation of the match from the model's first curve and what is expected.
     fn rotation(&self, candidate: &CoarseMatch) -> f64 {
-        let mut sum = Point::zeros();
-        if let Some(ModelCurve { form, parameters, .. }) = self.model.curves.first() {
-            for (t, row) in parameters.iter().zip(&self.model.rows).step_by(CONTROL_STRIDE) {
-                let (a, b) = (form.curve.at(*t), self.pose.curve.at(candidate.map.at(*row)));
-                sum += Point::new(a.dot(&b), crate::math::point::cross(a, b));
-            }
-        }
-        angle::between(Point::new(1.0, 0.0), sum).abs()
+        let Some(ModelCurve { form, parameters, .. }) = self.model.curves.first() else {
+            return 0.0;
+        };
+        let own: Vec<f64> = self.model.rows.iter().map(|row| candidate.map.at(*row)).collect();
+        angle::wrap(turn_rad(form, parameters, self.pose, &own) - self.expected_rad).abs()
     }
 
     /// Where the spline number `level` through the current match takes each row's point.
@@ -216,6 +225,18 @@ impl Task<'_> {
         limited(&mut parameters, self.pins);
         parameters
     }
+}
+
+/// The angle of the best-fitting rotation from one form to another, in radians, by corresponding parameters.
+pub(super) fn turn_rad(reference: &Form, rows: &[f64], pose: &Form, parameters: &[f64]) -> f64 {
+    let pairs = rows.iter().zip(parameters).step_by(CONTROL_STRIDE);
+    let sum: Point = pairs
+        .map(|(t, own)| {
+            let (a, b) = (reference.curve.at(*t), pose.curve.at(*own));
+            Point::new(a.dot(&b), crate::math::point::cross(a, b))
+        })
+        .sum();
+    angle::between(Point::new(1.0, 0.0), sum)
 }
 
 /// A match with its costs and mismatches.

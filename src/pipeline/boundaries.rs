@@ -64,7 +64,17 @@ impl Boundaries {
                 ..MatchOptions::default()
             };
             let (matched, alone) = rayon::join(
-                || match_by_drawing(&scene.names(), &mut outlines, &appearances, on_outline, inside, options),
+                || {
+                    match_by_drawing(
+                        &scene.names(),
+                        drawings,
+                        &mut outlines,
+                        &appearances,
+                        on_outline,
+                        inside,
+                        options,
+                    )
+                },
                 alone,
             );
             let (matched, guide) = matched?;
@@ -153,6 +163,7 @@ fn match_outlines<T: Send>(
     let refusal = |error| match_refusal(&names, error);
     let (first, beside) = match_rings_beside(&outer, landmarks, &options, beside).map_err(refusal)?;
     order_holes(outlines, first.reference)?;
+    options.turns_rad = first.turns_rad;
     let mut matched = Matched {
         reference: first.reference,
         correspondences: vec![first.correspondence],

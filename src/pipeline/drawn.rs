@@ -4,13 +4,14 @@ use rayon::prelude::*;
 
 use super::PipelineError;
 use super::boundaries::{Matched, match_refusal, order_holes};
+use super::named::named_pairs;
 use crate::appearance::{Appearance, Profile};
 use crate::compatible::Guide;
 use crate::input::Drawing;
 use crate::matching::{Landmark, MatchError, MatchOptions, MirrorHints, RingCandidates, RingMatch};
 use crate::math::Point;
 use crate::outline::{ArcLength, Outline, Ring};
-use crate::registration::{Registration, RingPairs, register};
+use crate::registration::{Pin, Registration, RingPairs, register};
 
 /// Samples of a profile: one a row of a match.
 const PROFILE_SAMPLES: usize = 512;
@@ -40,6 +41,7 @@ pub(super) fn appearances(drawings: &[Drawing]) -> Vec<Appearance> {
 /// Matches all rings and registers the interiors. `inside` are pairs of points inside that correspond for certain: #points x #poses.
 pub(super) fn match_by_drawing(
     names: &[String],
+    drawings: &[Drawing],
     outlines: &mut [Outline],
     appearances: &[Appearance],
     landmarks: &[Landmark],
@@ -65,12 +67,13 @@ pub(super) fn match_by_drawing(
         places.map(|(t, arc)| t.map(|t| arc.at(t))).collect()
     });
     let known: Vec<Vec<Option<Point>>> = on_outline.chain(inside.iter().cloned()).collect();
-    let pins: Vec<Vec<[Point; 2]>> = poses
+    let pins: Vec<Vec<Pin>> = poses
         .map(|pose| {
-            known
+            let certain = known
                 .iter()
-                .filter_map(|at| Some([at[reference]?, at[pose]?]))
-                .collect()
+                .filter_map(|at| Some(Pin::certain(at[reference]?, at[pose]?)));
+            let named = named_pairs(&drawings[reference], &drawings[pose]).into_iter();
+            certain.chain(named.map(|[from, to]| Pin::likely(from, to))).collect()
         })
         .collect();
     let (registration, chosen) = register(appearances.to_vec(), reference, &beginnings, &pins)
@@ -88,6 +91,7 @@ pub(super) fn match_by_drawing(
     };
     options.reference = Some(reference);
     options.mirror_hints = MirrorHints::Skip;
+    options.turns_rad = first.turns_rad;
     for hole in 0..outlines.first().map_or(0, |outline| outline.holes().len()) {
         let rings: Vec<Ring> = outlines.iter().map(|outline| outline.holes()[hole].clone()).collect();
         let of_hole = match_hole(&rings, appearances, &options, &carried).map_err(refusal)?;

@@ -23,4 +23,4 @@ mod register;
 mod rigid;
 mod template;
 
-pub use register::{Registration, RegistrationError, RingPairs, register};
+pub use register::{Pin, Registration, RegistrationError, RingPairs, register};

@@ -20,12 +20,14 @@ pub(super) struct RingPair {
     pub(super) pose: Vec<Point>,
 }
 
-/// Where the vertices go when the outlines do: those near an outline as it moves and turns there, the others as rigidly as possible.
+/// Where the vertices go when the outlines do: those near an outline as it moves and turns there, those near a pin as it moves, the others as
+/// rigidly as possible.
 pub(super) fn spread(
     lattice: &Lattice,
     rigid: &Rigid,
     size: f64,
     rings: &[RingPair],
+    pins: &[[Point; 2]],
 ) -> Result<Vec<Point>, SolveError> {
     let mut samples: Vec<(Point, Point, Point)> = Vec::new();
     let mut of_cell: Vec<Vec<usize>> = vec![Vec::new(); lattice.points.len()];
@@ -66,6 +68,12 @@ pub(super) fn spread(
         let turned = Matrix::new(turn.x, -turn.y, turn.y, turn.x) * (p - from);
         places.push(to + turned * size);
         trust.push(Matrix::identity() * if is_near { 1.0 } else { FREE_TRUST });
+    }
+    for [from, to] in pins {
+        if let Some((cell, _)) = lattice.cell_at(*from) {
+            places[cell] = to + (lattice.points[cell] - from) * size;
+            trust[cell] = Matrix::identity();
+        }
     }
     let targets = Targets {
         places: &places,

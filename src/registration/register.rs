@@ -56,10 +56,13 @@ const fn level(
 /// A beginning is first made this stiff, beside a trust of 1 in where it is: folds that the outlines left come out.
 const FIRST_STIFFNESS: f64 = 30.0;
 const FIRST_ITERATIONS: usize = 10;
+/// A beginning is taken instead of one that turns the drawing less if its drawings differ by less than this share, less this difference.
+const CLEARLY: (f64, f64) = (0.95, 0.003);
 /// Trust falls by a factor e when the best place in the window differs by this share of [`MOST_DIFFERENCE`].
 const DOUBT: f32 = 0.25;
-/// The trust in a given point, beside about 1 of a vertex whose place is clear.
-const PIN_TRUST: f64 = 3e3;
+/// The trust in a pair of points that is certain and in one that is likely, beside some 100 of a vertex whose place is clear.
+const CERTAIN: f64 = 1e5;
+const LIKELY: f64 = 300.0;
 
 /// A level ends when vertices move by less than this share of its step in the mean.
 const STILL: f64 = 0.1;
@@ -78,6 +81,36 @@ pub enum RegistrationError {
 
 /// Outlines in correspondence, as a beginning: for every ring, points of the reference and of the pose in source units.
 pub type RingPairs = Vec<(Vec<Point>, Vec<Point>)>;
+
+/// A place of the reference and the place of a pose that corresponds to it, in source units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pin {
+    from: Point,
+    to: Point,
+    trust: f64,
+}
+
+impl Pin {
+    /// A pair that corresponds for certain: an artist says so.
+    #[must_use]
+    pub fn certain(from: Point, to: Point) -> Self {
+        Self {
+            from,
+            to,
+            trust: CERTAIN,
+        }
+    }
+
+    /// A pair that is likely to correspond: what is drawn may contradict it.
+    #[must_use]
+    pub fn likely(from: Point, to: Point) -> Self {
+        Self {
+            from,
+            to,
+            trust: LIKELY,
+        }
+    }
+}
 
 /// Where the reference's places are in every pose.
 #[derive(Debug, Clone)]
@@ -112,8 +145,8 @@ impl Registration {
     }
 }
 
-/// Registers every pose of `appearances` but the reference, and says for each which beginning explained the drawing best. `beginnings` has for each at least one beginning, `pins` pairs of points
-/// (of the reference and of the pose, in source units) that correspond for certain.
+/// Registers every pose of `appearances` but the reference, and says for each which beginning explained the drawing best. `beginnings` has for each at least one beginning, the
+/// one that turns the drawing least first; `pins` are pairs of points that are known to correspond.
 ///
 /// # Errors
 /// [`RegistrationError`] if the reference has no figure.
@@ -121,7 +154,7 @@ pub fn register(
     appearances: Vec<Appearance>,
     reference: usize,
     beginnings: &[Vec<RingPairs>],
-    pins: &[Vec<[Point; 2]>],
+    pins: &[Vec<Pin>],
 ) -> Result<(Registration, Vec<usize>), RegistrationError> {
     let own = &appearances[reference];
     let lattice = Lattice::new(&own.mask(), own.size()[0], SPACING * PIXELS_PER_UNIT);
@@ -179,18 +212,22 @@ struct Pair<'a> {
     lattice: &'a Lattice,
     reference: &'a Appearance,
     pose: &'a Appearance,
-    /// Points that correspond for certain, in working pixels.
-    pins: Vec<[Point; 2]>,
+    /// In working pixels.
+    pins: Vec<Pin>,
 }
 
 impl<'a> Pair<'a> {
-    fn new(lattice: &'a Lattice, reference: &'a Appearance, pose: &'a Appearance, pins: &[[Point; 2]]) -> Self {
+    fn new(lattice: &'a Lattice, reference: &'a Appearance, pose: &'a Appearance, pins: &[Pin]) -> Self {
         Self {
             lattice,
             reference,
             pose,
             pins: (pins.iter())
-                .map(|[a, b]| [reference.to_pixels(*a), pose.to_pixels(*b)])
+                .map(|pin| Pin {
+                    from: reference.to_pixels(pin.from),
+                    to: pose.to_pixels(pin.to),
+                    trust: pin.trust,
+                })
                 .collect(),
         }
     }
@@ -213,7 +250,8 @@ impl<'a> Pair<'a> {
             } else {
                 0.0
             };
-            if best.as_ref().is_none_or(|(least, ..)| difference < *least) {
+            let is_better = |least: f64| difference < CLEARLY.0 * least - CLEARLY.1;
+            if best.as_ref().is_none_or(|(least, ..)| is_better(*least)) {
                 best = Some((difference, places, number));
             }
         }
@@ -237,13 +275,39 @@ impl<'a> Pair<'a> {
                 pose: pose.iter().map(|p| self.pose.to_pixels(*p)).collect(),
             })
             .collect();
-        let places = spread(self.lattice, rigid, 1.0, &rings)?;
-        let everywhere = vec![Matrix::identity(); places.len()];
+        let pins: Vec<[Point; 2]> = self.pins.iter().map(|pin| [pin.from, pin.to]).collect();
+        let places = spread(self.lattice, rigid, 1.0, &rings, &pins)?;
+        let (mut wanted, mut trust) = (places.clone(), vec![Matrix::identity(); places.len()]);
+        self.pin(rigid, &places, &mut wanted, &mut trust);
         let targets = Targets {
-            places: &places,
-            trust: &everywhere,
+            places: &wanted,
+            trust: &trust,
         };
         Ok(rigid.solve(&places, &targets, FIRST_STIFFNESS, FIRST_ITERATIONS)?)
+    }
+
+    /// Joins the targets with those that pins give the vertices next to them, each by its trust.
+    fn pin(&self, rigid: &Rigid, places: &[Point], targets: &mut [Point], trust: &mut [Matrix]) {
+        if self.pins.is_empty() {
+            return;
+        }
+        let rotations = rigid.rotations(places, 1);
+        let mut sums = vec![(0.0, Point::zeros()); targets.len()];
+        for pin in &self.pins {
+            if let Some((cell, _)) = self.lattice.cell_at(pin.from) {
+                let turn = rotations[cell];
+                let aside = Matrix::new(turn.x, -turn.y, turn.y, turn.x) * (self.lattice.points[cell] - pin.from);
+                sums[cell].0 += pin.trust;
+                sums[cell].1 += (pin.to + aside) * pin.trust;
+            }
+        }
+        for (cell, (sum, weighted)) in sums.into_iter().enumerate().filter(|(_, sum)| sum.0 > 0.0) {
+            let joint = trust[cell] + Matrix::identity() * sum;
+            if let Some(inverse) = joint.try_inverse() {
+                targets[cell] = inverse * (trust[cell] * targets[cell] + weighted);
+                trust[cell] = joint;
+            }
+        }
     }
 
     fn level(
@@ -267,14 +331,7 @@ impl<'a> Pair<'a> {
                 targets.push(place + fit.displacement);
                 trust.push(inverse * confidence * self.lattice.spacing.powi(2));
             }
-            for [from, to] in &self.pins {
-                if let Some((cell, _)) = self.lattice.cell_at(*from) {
-                    let turn = rotations[cell];
-                    let aside = Matrix::new(turn.x, -turn.y, turn.y, turn.x) * (self.lattice.points[cell] - from);
-                    targets[cell] = to + aside;
-                    trust[cell] = Matrix::identity() * PIN_TRUST;
-                }
-            }
+            self.pin(rigid, &places, &mut targets, &mut trust);
             let targets = Targets {
                 places: &targets,
                 trust: &trust,

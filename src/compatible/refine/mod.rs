@@ -151,6 +151,9 @@ pub fn refine_guided(
         flips += flip::flip(&mut work, &curves.paths);
         length *= 0.5;
     }
+    if let Some(guide) = guide {
+        flips += guide::refine_where_bent(&mut work, &mut curves, &diagonals, options.edge_length, guide);
+    }
     for _ in 1..DISTORTION_ROUNDS {
         let stars = Stars::new(&work, &curves);
         guide::minimise(&mut work, &stars, DISTORTION_SWEEPS, guide);

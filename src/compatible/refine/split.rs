@@ -1,6 +1,6 @@
 //! Compatible splits: long edges get a vertex at their middle in every pose.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::editable::{Curves, EditableMesh};
 use super::Guide;
@@ -77,6 +77,21 @@ pub(super) fn split_long_edges(
         }
         if !any {
             break;
+        }
+    }
+}
+
+/// Splits edges inside that are given with their ends, most urgent first; those of paths stay whole, and of the edges of a triangle one is split.
+pub(super) fn split_inner_edges(mesh: &mut EditableMesh, curves: &Curves, edges: &[(f64, usize, usize)]) {
+    let links = curves.paths.iter().flat_map(|path| path.windows(2));
+    let on_path: BTreeSet<(usize, usize)> = links.map(|link| undirected(link[0], link[1])).collect();
+    let mut changed: BTreeSet<usize> = BTreeSet::new();
+    for &(_, a, b) in edges {
+        let apexes = [mesh.opposite(a, b), mesh.opposite(b, a)];
+        let around = [Some(a), Some(b), apexes[0], apexes[1]];
+        let is_free = around.iter().flatten().filter(|v| changed.contains(v)).count() < 2;
+        if is_free && !on_path.contains(&undirected(a, b)) && split_edge(mesh, a, b, None).is_some() {
+            changed.extend(around.into_iter().flatten());
         }
     }
 }
