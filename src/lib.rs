@@ -67,6 +67,8 @@ pub mod blend;
 
 pub mod texture;
 
+pub mod animation;
+
 pub mod render;
 
 pub mod shape3d;

@@ -4,9 +4,10 @@
 //! silhouette, which is the total variation of alpha: two faint edges in the place of one have its length together, and
 //! twice its area. An exactly covered straight edge has 0.6 to 0.8 pixels.
 
+use inbetween::animation::Background;
 use inbetween::pipeline::{Character, laid_out};
 use inbetween::render::Frame;
-use inbetween::scene::{ArtChoice, Background, Scene};
+use inbetween::scene::{ArtChoice, Scene};
 
 /// Between poses at most this times the widest of the poses.
 const WIDER: f64 = 1.5;

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use anyhow::Context as _;
+use inbetween::animation::Background;
 use inbetween::export::{png_bytes, svg_text};
 use inbetween::pipeline::{Character, checked_weights, laid_out};
-use inbetween::scene::{Background, Scene};
+use inbetween::scene::Scene;
 
 use super::output::Output;
 use super::values::{Grid, Numbers, background, supersample};

@@ -1,11 +1,12 @@
 //! The scene, as the page needs it.
 
+use inbetween::animation::Background;
 use inbetween::blend::{FrameGuard, Reference, Stretch};
 use inbetween::math::Point;
 use inbetween::pipeline::Workbench;
-use inbetween::scene::{
-    ArtChoice, Background, ColourBlend, Facing, HandleMove, Layout, PoseSource, Provider, Radial, Scene, WeightRange,
-};
+use inbetween::render::ColourBlend;
+use inbetween::scene::{ArtChoice, Facing, HandleMove, Layout, PoseSource, Provider, Scene};
+use inbetween::weights::{Radial, Range};
 use serde_json::{Map, Value, json};
 
 use super::pictures::reflected;
@@ -76,7 +77,7 @@ fn of(scene: &Scene, bench: Option<&Workbench>) -> Value {
             "provider": name_of(&Provider::NAMED, &settings.provider),
             "radial": match settings.radial { Radial::BSpline => "b-spline", Radial::ThinPlate => "thin-plate" },
             "epsilon": settings.epsilon,
-            "bounded": settings.range == WeightRange::Unit,
+            "bounded": settings.range == Range::Unit,
             "walls": settings.walls,
         },
         "blend": {

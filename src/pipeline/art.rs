@@ -6,8 +6,8 @@ use super::layer::{LayerShape, Part, PosedLayer};
 use crate::input::Drawing;
 use crate::render::drawing::{CarriedDrawing, PoseArt, VectorNode, VectorPicture};
 use crate::render::puppet::{PuppetLayer, PuppetTexture};
-use crate::render::{Camera, ColourBlend, PaintOptions, Painter, PoseTexture, Texture};
-use crate::scene::{self, ArtChoice, Scene};
+use crate::render::{Camera, PaintOptions, Painter, PoseTexture, Texture};
+use crate::scene::{ArtChoice, Scene};
 
 /// The drawings of a layer, ready to be drawn on its mesh.
 #[derive(Debug)]
@@ -40,10 +40,7 @@ impl LayerArt {
         let drawn_on = part.scene.drawn_poses();
         let drawing_of = part.scene.shown_drawings();
         let (mapping, silhouette) = (shape.mapping(), shape.silhouette.clone());
-        let blending = match part.scene.colour_blend {
-            scene::ColourBlend::Plain => ColourBlend::Plain,
-            scene::ColourBlend::Linear => ColourBlend::Linear,
-        };
+        let blending = part.scene.colour_blend;
         let style = match curves(part.scene, &mut drawings, &drawn_on) {
             Some(curves) => {
                 let (carried, remarks) = CarriedDrawing::new(mapping, curves, drawing_of.clone(), silhouette, camera);

@@ -1,38 +1,15 @@
-//! From what a scene says about blending to the blend's own options.
+//! From what a scene says about blending to the options of a blend of its mesh: landmarks become vertices.
 
-use crate::blend::{self, BlendOptions};
+use crate::blend::BlendOptions;
 use crate::pose::Mapping;
-use crate::scene::{Anchor, Scene};
+use crate::scene::Scene;
 
 pub(super) fn blend_options(scene: &Scene, mapping: &Mapping) -> BlendOptions {
-    let vertex = |landmark| nearest_vertex(scene, mapping, landmark);
-    let settings = &scene.blend;
     BlendOptions {
-        reference: settings.reference,
-        stretch: settings.stretch,
-        anchor: match &settings.anchor {
-            Anchor::Centroid => blend::Anchor::Centroid,
-            Anchor::Landmark(landmark) => blend::Anchor::Vertex(vertex(*landmark)),
-            Anchor::Soft(anchors) => {
-                let soft = anchors.iter().map(|anchor| blend::SoftAnchor {
-                    vertex: vertex(anchor.landmark),
-                    stiffness: anchor.stiffness,
-                });
-                blend::Anchor::Soft(soft.collect())
-            }
-        },
         turns: scene.poses.iter().map(|pose| pose.turns).collect(),
-        regions: settings
-            .regions
-            .iter()
-            .map(|region| blend::Region {
-                vertex: vertex(region.landmark),
-                radius: region.radius,
-                stiffness: region.stiffness,
-                stretch_limit: region.stretch_limit,
-            })
-            .collect(),
-        guard: settings.guard,
+        ..scene
+            .blend
+            .with_points(|landmark| nearest_vertex(scene, mapping, landmark))
     }
 }
 

@@ -11,11 +11,12 @@ use super::figure::{self, Figure, Posed};
 use super::layer::{self, LayerShape, Part};
 use super::layout::placed;
 use super::{PipelineError, weight_provider, weighting};
+use crate::animation::{Animation, Background};
 use crate::input::Drawing;
 use crate::render::drawing::{VectorFrame, VectorGroup, VectorNode};
 use crate::render::puppet::{Puppet, PuppetFrame};
 use crate::render::{Camera, Frame, PaintOptions, Painter};
-use crate::scene::{Animation, Background, Layout, Scene};
+use crate::scene::{Layout, Scene};
 use crate::weights::WeightProvider;
 
 /// A scene's character with everything that is computed once: mappings, factorised blends, weights, textures, camera.

@@ -5,11 +5,11 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::PipelineError;
-use crate::input::{BitmapOptions, Drawing, Extent, HoleRule, InputError, SvgOptions, open_bitmap, open_svg};
+use crate::input::{BitmapOptions, Drawing, HoleRule, InputError, SvgOptions, open_bitmap, open_svg};
 use crate::math::Point;
 use crate::math::point::bounding_box;
 use crate::outline::{Outline, OutlineError, Ring};
-use crate::scene::{self, Facing, Holes, Scene};
+use crate::scene::{Facing, Holes, Scene};
 
 /// Reads the drawings of a scene, in parallel: one a pose that has one of its own (deformed copies have none), in the scene's
 /// order. Mirrored poses are reflected, picture and outline.
@@ -67,10 +67,7 @@ fn read_drawing(scene: &Scene, pose: usize, pixels_per_unit: Option<f64>) -> Res
                 element: said.element.clone(),
                 pixels_per_unit,
                 holes,
-                extent: match said.extent {
-                    scene::Extent::Everything => Extent::Everything,
-                    scene::Extent::Element => Extent::Element,
-                },
+                extent: said.extent,
             },
         )
     } else {

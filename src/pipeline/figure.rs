@@ -2,9 +2,10 @@
 
 use super::PipelineError;
 use super::layer::{LayerShape, PosedLayer};
+use crate::animation::Animation;
 use crate::math::Point;
 use crate::render::Camera;
-use crate::scene::{Animation, Scene};
+use crate::scene::Scene;
 use crate::texture::shared_texture_weights;
 use crate::weights::WeightProvider;
 

@@ -1,9 +1,9 @@
 //! The weights a scene asks for.
 
 use super::PipelineError;
-use crate::scene::{Provider, Radial, Scene, WeightRange};
+use crate::scene::{Provider, Scene};
 use crate::weights::{
-    self, BiharmonicOptions, BiharmonicWeights, PseudoPose, Range, RbfOptions, RbfWeights, WeightError, WeightProvider,
+    BiharmonicOptions, BiharmonicWeights, Range, RbfOptions, RbfWeights, WeightError, WeightProvider,
 };
 
 /// How far the sum of given weights may be from 1.
@@ -75,24 +75,14 @@ impl WeightProvider for EditableWeights {
 /// As [`weight_provider`].
 pub fn editable_weights(scene: &Scene, provider: Option<Provider>) -> Result<EditableWeights, PipelineError> {
     let places: Vec<Vec<f64>> = scene.poses.iter().map(|pose| pose.at.clone()).collect();
-    let pseudo_poses: Vec<PseudoPose> = scene
-        .pseudo_poses
-        .iter()
-        .map(|pseudo| PseudoPose {
-            from: pseudo.from.clone(),
-            at: pseudo.at.clone(),
-        })
-        .collect();
+    let pseudo_poses = scene.pseudo_poses.clone();
     let refusal = |message: String| PipelineError::stage(&[], None, format!("pose space: {message}"));
     let settings = &scene.pose_space;
     let built: Result<EditableWeights, WeightError> = match provider.unwrap_or(scene.pose_space.provider) {
         Provider::Biharmonic => {
             let options = BiharmonicOptions {
                 epsilon: settings.epsilon,
-                range: match settings.range {
-                    WeightRange::Free => Range::Free,
-                    WeightRange::Unit => Range::Unit,
-                },
+                range: settings.range,
                 walls: settings.walls.clone(),
                 pseudo_poses,
                 ..BiharmonicOptions::default()
@@ -100,16 +90,13 @@ pub fn editable_weights(scene: &Scene, provider: Option<Provider>) -> Result<Edi
             BiharmonicWeights::new(&places, &options).map(|w| EditableWeights::Biharmonic(Box::new(w)))
         }
         Provider::Rbf => {
-            if !settings.walls.is_empty() || settings.range != WeightRange::Free {
+            if !settings.walls.is_empty() || settings.range != Range::Free {
                 return Err(refusal(
                     "radial weights know no walls and no bounds; remove them, or take biharmonic weights".to_owned(),
                 ));
             }
             let options = RbfOptions {
-                radial: match scene.pose_space.radial {
-                    Radial::BSpline => weights::Radial::BSpline,
-                    Radial::ThinPlate => weights::Radial::ThinPlate,
-                },
+                radial: settings.radial,
                 pseudo_poses,
             };
             RbfWeights::new(&places, &options).map(|w| EditableWeights::Rbf(Box::new(w)))

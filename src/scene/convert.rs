@@ -13,10 +13,9 @@ use toml::Spanned;
 
 use super::error::{SceneError, SceneProblem};
 use super::file::SceneFile;
-use super::settings::{
-    ArtChoice, ColourBlend, Holes, InputSettings, Layout, MeshSettings, PoseSpaceSettings, Provider, PseudoPose,
-    Radial, Scene, WeightRange,
-};
+use super::settings::{ArtChoice, Holes, InputSettings, Layout, MeshSettings, PoseSpaceSettings, Provider, Scene};
+use crate::render::ColourBlend;
+use crate::weights::{PseudoPose, Radial, Range};
 
 /// The version of the format.
 const VERSION: i64 = 1;
@@ -326,8 +325,8 @@ impl Reader<'_> {
                 "between 0 and a million",
             )?,
             range: match bounded {
-                Some(_) => WeightRange::Unit,
-                None => WeightRange::Free,
+                Some(_) => Range::Unit,
+                None => Range::Free,
             },
             walls: match walls {
                 Some(walls) => self.walls(walls)?,

@@ -6,7 +6,6 @@
 //!
 //! Keys that a later release will serve are known and refused by name, never ignored.
 
-mod animation;
 mod convert;
 mod error;
 mod file;
@@ -16,14 +15,12 @@ mod settings;
 mod shape;
 mod source;
 
-pub use animation::{Animation, Key};
 pub use error::{SceneError, SceneProblem};
 pub use layers::{LayerAnchor, SceneLayer};
 pub use new::{NewPose, scene_text};
 pub use settings::{
-    Anchor, ArtChoice, Background, BlendSettings, ColourBlend, DeformedCopy, DrawnSource, Extent, Facing, HandleMove,
-    Holes, InputSettings, Layout, MeshSettings, PoseSource, PoseSpaceSettings, Provider, PseudoPose, Radial, Region,
-    Scene, SceneLandmark, ScenePath, ScenePose, SoftAnchor, WeightRange,
+    ArtChoice, DeformedCopy, DrawnSource, Facing, HandleMove, Holes, InputSettings, Layout, MeshSettings, PoseSource,
+    PoseSpaceSettings, Provider, Scene, SceneLandmark, ScenePath, ScenePose,
 };
 pub use shape::{
     AxisSettings, JointScaling, JointSettings, JointShift, JointTurn, PseudoExample, ShapeExample, ShapeFile,

@@ -1,10 +1,14 @@
 //! The validated scene.
 
-use crate::blend::{FrameGuard, Reference, Stretch};
 use std::path::{Path, PathBuf};
 
-use super::{Animation, SceneLayer};
+use super::SceneLayer;
+use crate::animation::Animation;
+use crate::blend::BlendOptions;
+use crate::input::Extent;
 use crate::math::Point;
+use crate::render::ColourBlend;
+use crate::weights::{PseudoPose, Radial, Range};
 
 /// A scene: everything the artist says about a character.
 ///
@@ -24,8 +28,8 @@ pub struct Scene {
     pub layout: Layout,
     /// How weights fall off over the pose space.
     pub pose_space: PoseSpaceSettings,
-    /// How shapes are blended.
-    pub blend: BlendSettings,
+    /// How shapes are blended: points are landmarks, by their places in `landmarks`; whole turns are those of the poses.
+    pub blend: BlendOptions,
     /// How sharply textures follow the nearest pose, `sigma`, from 0 (as the shape) to 1 (nearest pose only).
     pub texture_sharpness: f64,
     /// In which light colours are averaged.
@@ -46,16 +50,6 @@ pub struct Scene {
     pub animation: Animation,
 }
 
-/// In which light the colours of drawings are averaged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum ColourBlend {
-    /// As the numbers stand in the files, like most drawing programs.
-    #[default]
-    Plain,
-    /// In linear light: mixtures are brighter, as of real lights.
-    Linear,
-}
-
 /// Whether vector drawings are drawn as curves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ArtChoice {
@@ -64,16 +58,6 @@ pub enum ArtChoice {
     Curves,
     /// From pixels.
     Pixels,
-}
-
-/// How much of a file a drawing is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Extent {
-    /// All that is drawn in it.
-    #[default]
-    Everything,
-    /// Its element alone.
-    Element,
 }
 
 /// Whether holes of the drawings are holes of the shape.
@@ -146,16 +130,6 @@ impl Provider {
     }
 }
 
-/// Which radial function the cardinal basis uses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Radial {
-    /// The cubic B-spline of SBE, with local support.
-    #[default]
-    BSpline,
-    /// The thin plate.
-    ThinPlate,
-}
-
 /// Where the places of the poses come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Layout {
@@ -165,16 +139,6 @@ pub enum Layout {
     /// From how far the drawings are from one another. That is known when they are mapped; [`Scene::laid_out`] then takes
     /// the places. Until then they are even on a circle.
     Automatic,
-}
-
-/// What values weights may have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum WeightRange {
-    /// Any.
-    #[default]
-    Free,
-    /// From 0 to 1.
-    Unit,
 }
 
 /// How weights fall off over the pose space.
@@ -187,7 +151,7 @@ pub struct PoseSpaceSettings {
     /// The weight of the squared gradient in [`Provider::Biharmonic`].
     pub epsilon: f64,
     /// What values the weights of [`Provider::Biharmonic`] may have.
-    pub range: WeightRange,
+    pub range: Range,
     /// Polylines that influence may not cross in [`Provider::Biharmonic`].
     pub walls: Vec<Vec<[f64; 2]>>,
 }
@@ -199,59 +163,10 @@ impl Default for PoseSpaceSettings {
             provider: Provider::default(),
             radial: Radial::default(),
             epsilon: 1e-3,
-            range: WeightRange::default(),
+            range: Range::default(),
             walls: Vec::new(),
         }
     }
-}
-
-/// What keeps the blended shape in its place.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub enum Anchor {
-    /// The area-weighted centroid moves linearly in the weights.
-    #[default]
-    Centroid,
-    /// The landmark of this index does.
-    Landmark(usize),
-    /// These landmarks do, as far as the shape gives way.
-    Soft(Vec<SoftAnchor>),
-}
-
-/// A landmark that is drawn to where the weights put it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SoftAnchor {
-    /// The landmark's index.
-    pub landmark: usize,
-    /// How strongly; see [`crate::blend::SoftAnchor::stiffness`].
-    pub stiffness: f64,
-}
-
-/// A part of the shape around a landmark that is stiffer than the rest, or may not be stretched far.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Region {
-    /// The landmark's index.
-    pub landmark: usize,
-    /// How far it reaches along the mesh, as a fraction of a pose's diagonal.
-    pub radius: f64,
-    /// What the energy of its triangles is multiplied by; 1 changes nothing.
-    pub stiffness: f64,
-    /// By which factor it may be stretched or squashed more than in any pose; infinite for no limit.
-    pub stretch_limit: f64,
-}
-
-/// How shapes are blended.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct BlendSettings {
-    /// From which pose.
-    pub reference: Reference,
-    /// How stretches are blended.
-    pub stretch: Stretch,
-    /// What stays in place.
-    pub anchor: Anchor,
-    /// What happens to frames with inverted triangles.
-    pub guard: FrameGuard,
-    /// Parts that are stiffer than others.
-    pub regions: Vec<Region>,
 }
 
 /// Whether a drawing is used as it is.
@@ -326,15 +241,6 @@ pub struct HandleMove {
     pub to: Point,
 }
 
-/// A blend that is wanted elsewhere than it is found (SBE 4).
-#[derive(Debug, Clone, PartialEq)]
-pub struct PseudoPose {
-    /// Where the blend is found.
-    pub from: Vec<f64>,
-    /// Where it is wanted.
-    pub at: Vec<f64>,
-}
-
 /// A point that the artist names on several poses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneLandmark {
@@ -362,16 +268,6 @@ pub struct ScenePath {
     pub at: Vec<Option<Vec<Point>>>,
 }
 
-/// What is behind the character.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Background {
-    /// Nothing.
-    #[default]
-    Transparent,
-    /// A colour: red, green, blue, alpha, not premultiplied.
-    Colour([u8; 4]),
-}
-
 impl Scene {
     /// The dimension of the pose space.
     #[must_use]
@@ -387,9 +283,12 @@ impl Scene {
         for (pose, place) in scene.poses.iter_mut().zip(places) {
             pose.at.clone_from(place);
         }
-        scene.animation = self
+        let moved = self
             .animation
             .through(scene.poses.iter().map(|pose| pose.at.as_slice()));
+        if let Ok(moved) = moved {
+            scene.animation = moved;
+        }
         scene.layout = Layout::Given;
         scene
     }

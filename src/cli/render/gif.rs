@@ -1,8 +1,8 @@
 //! An animated GIF.
 
+use inbetween::animation::{Animation, Background};
 use inbetween::export::{Backdrop, ColourCount, GifWriter, Palette, PendingFile};
 use inbetween::pipeline::Character;
-use inbetween::scene::{Animation, Background};
 
 use super::job::Job;
 use crate::cli::frames;

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use anyhow::Context as _;
+use inbetween::animation::Animation;
 use inbetween::export::Repetition;
 use inbetween::pipeline::Character;
-use inbetween::scene::{Animation, Scene};
+use inbetween::scene::Scene;
 
 use crate::cli::Verbosity;
 use crate::cli::frames;

@@ -15,8 +15,9 @@ mod webp;
 use std::path::PathBuf;
 
 use anyhow::Context as _;
+use inbetween::animation::Background;
 use inbetween::pipeline::laid_out;
-use inbetween::scene::{Background, Scene};
+use inbetween::scene::Scene;
 
 use self::format::Format;
 use self::job::Job;

@@ -1,6 +1,7 @@
 //! A character as the crate's own file for playing.
 
 use super::{Character, PipelineError};
+use crate::animation::Animation;
 use crate::export::runtime::{
     RuntimeAnimation, RuntimeFile, RuntimeLayer, RuntimePose, RuntimeTexture, RuntimeTie, WeightField,
 };
@@ -8,7 +9,7 @@ use crate::math::{Point, point};
 use crate::pipeline::LayerShape;
 use crate::pose::PoseSet;
 use crate::render::puppet::{PuppetLayer, PuppetTexture};
-use crate::scene::{Animation, Scene};
+use crate::scene::Scene;
 
 /// Samples of the weights along a side of the plane.
 const GRID: usize = 65;

@@ -3,10 +3,11 @@
 use toml::{Spanned, Value};
 
 use super::{Checked, Reader};
+use crate::input::Extent;
 use crate::scene::error::SceneProblem;
 use crate::scene::file::{LayerTable, PoseTable, SceneFile};
 use crate::scene::layers::{LayerAnchor, SceneLayer};
-use crate::scene::settings::{DeformedCopy, DrawnSource, Extent, Facing, PoseSource, Scene};
+use crate::scene::settings::{DeformedCopy, DrawnSource, Facing, PoseSource, Scene};
 
 impl Reader<'_> {
     /// The layers' names, in drawing order from back to front; none in a scene without.

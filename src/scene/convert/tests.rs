@@ -1,7 +1,9 @@
 use super::*;
+use crate::animation::Background;
+use crate::blend::{Anchor, BlendOptions, Region, SoftAnchor};
 use crate::blend::{FrameGuard, Reference};
 use crate::math::Point;
-use crate::scene::settings::{Anchor, Background, BlendSettings, Facing, PoseSource, Region, SoftAnchor};
+use crate::scene::settings::{Facing, PoseSource};
 
 fn parse(text: &str) -> Result<Scene, SceneError> {
     Scene::parse(text, Path::new("cat/scene.toml"))
@@ -22,7 +24,7 @@ fn the_smallest_scene_has_the_documented_defaults() {
     assert_eq!(scene.input, InputSettings::default());
     assert_eq!(scene.mesh, MeshSettings::default());
     assert_eq!(scene.pose_space, PoseSpaceSettings::default());
-    assert_eq!(scene.blend, BlendSettings::default());
+    assert_eq!(scene.blend, BlendOptions::default());
     assert_eq!(scene.texture_sharpness, 0.5);
     assert_eq!((scene.animation.fps, scene.animation.size), (24.0, [1280, 720]));
     assert_eq!(scene.animation.frame_count(), 1);
@@ -82,7 +84,7 @@ keys = [ { time = 0, at = [0, 0] }, { time = 2.0, at = [1, 1] } ]
     assert_eq!(scene.reference, Some(0));
     assert_eq!(scene.input.holes, Holes::Fill);
     assert_eq!(scene.blend.reference, Reference::Pose(1));
-    assert_eq!(scene.blend.anchor, Anchor::Landmark(0));
+    assert_eq!(scene.blend.anchor, Anchor::Point(0));
     let drawings: Vec<_> = (0..2)
         .filter_map(|pose| scene.drawing_of(pose))
         .map(|(_, drawing)| drawing)
@@ -224,12 +226,12 @@ fn anchors_regions_and_guard_are_read() {
     ))
     .expect("a scene");
     assert_eq!(scene.blend.guard, FrameGuard::Repair);
-    let soft = [(1, 10.0), (0, 2.0)].map(|(landmark, stiffness)| SoftAnchor { landmark, stiffness });
+    let soft = [(1, 10.0), (0, 2.0)].map(|(point, stiffness)| SoftAnchor { point, stiffness });
     assert_eq!(scene.blend.anchor, Anchor::Soft(soft.to_vec()));
     assert_eq!(
         scene.blend.regions,
         [Region {
-            landmark: 1,
+            point: 1,
             radius: 0.2,
             stiffness: 1.0,
             stretch_limit: 1.5
@@ -268,7 +270,7 @@ fn walls_and_bounds_are_read() {
         "{TWO}[pose_space]\nbounded = true\nwalls = [[[0.2, 0.0], [0.2, 0.6]], [[1, 2], [3, 4], [5, 6]]]\n"
     ))
     .expect("a scene");
-    assert_eq!(scene.pose_space.range, WeightRange::Unit);
+    assert_eq!(scene.pose_space.range, crate::weights::Range::Unit);
     assert_eq!(scene.pose_space.walls[0], vec![[0.2, 0.0], [0.2, 0.6]]);
     assert_eq!(scene.pose_space.walls[1].len(), 3);
     for (walls, word) in [
