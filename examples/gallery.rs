@@ -18,9 +18,10 @@ use std::path::{Path, PathBuf};
 
 use inbetween::animation::Background;
 use inbetween::export::{Backdrop, ColourCount, GifWriter, Palette, PendingFile, Repetition, png_bytes};
-use inbetween::pipeline::{Character, ShapeModel, map_drawings, read_drawings, weight_provider};
+use inbetween::pipeline::{Character, map_drawings, read_drawings, weight_provider};
 use inbetween::render::Frame;
 use inbetween::render::diagram::{self, Diagram, DiagramPose, Sections};
+use inbetween::scene::ShapeModel;
 use inbetween::scene::{ArtChoice, Scene, ShapeScene};
 use stages::common::Sheet;
 

@@ -13,6 +13,7 @@ mod layers;
 mod new;
 mod settings;
 mod shape;
+mod shape_model;
 mod source;
 
 pub use error::{SceneError, SceneProblem};
@@ -27,3 +28,4 @@ pub use shape::{
     ShapeProblem, ShapeScene, SheetSettings, SkeletonSettings, SkinWeights, SubdivisionSettings, Subject,
     SurfacePoints,
 };
+pub use shape_model::{ShapeForm, ShapeModel, ShapeModelError, ShapeSpace, ShapeTake};
