@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use inbetween::pipeline::Workbench;
-use inbetween::scene::{Provider, Scene};
+use inbetween::scene::{Provider, Scene, Workbench};
 use inbetween::weights::Range;
 
 /// What changed besides places.

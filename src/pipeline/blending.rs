@@ -1,21 +1,18 @@
-//! From what a scene says about blending to the options of a blend of its mesh: landmarks become vertices.
+//! From a layer's blend options, whose points are landmarks, to those of its mesh, whose points are vertices.
 
+use super::spec::LayerSpec;
 use crate::blend::BlendOptions;
 use crate::pose::Mapping;
-use crate::scene::Scene;
 
-pub(super) fn blend_options(scene: &Scene, mapping: &Mapping) -> BlendOptions {
-    BlendOptions {
-        turns: scene.poses.iter().map(|pose| pose.turns).collect(),
-        ..scene
-            .blend
-            .with_points(|landmark| nearest_vertex(scene, mapping, landmark))
-    }
+pub(super) fn blend_options(layer: &LayerSpec, mapping: &Mapping) -> BlendOptions {
+    layer
+        .blend
+        .with_points(|landmark| nearest_vertex(layer, mapping, landmark))
 }
 
 /// The vertex nearest to a landmark, over all poses that have it.
-fn nearest_vertex(scene: &Scene, mapping: &Mapping, landmark: usize) -> usize {
-    let places = &scene.landmarks[landmark].at;
+fn nearest_vertex(layer: &LayerSpec, mapping: &Mapping, landmark: usize) -> usize {
+    let places = &layer.landmarks[landmark].at;
     let distance = |vertex: usize| -> f64 {
         places
             .iter()

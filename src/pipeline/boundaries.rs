@@ -1,5 +1,8 @@
 //! The outlines' part of a mapping: matched, and simplified to polygons with corresponding vertices.
 
+use std::sync::Arc;
+
+use super::spec::LayerSpec;
 use super::{PipelineError, Stage};
 use crate::compatible::{Simplification, Simplified, SimplifiedAlone, SimplifyError, SimplifyOptions};
 use crate::input::Drawing;
@@ -8,7 +11,6 @@ use crate::matching::{
 };
 use crate::math::Point;
 use crate::outline::{Outline, Ring};
-use crate::scene::Scene;
 
 /// The outlines matched and simplified, and what that was made of besides the drawings.
 #[derive(Debug)]
@@ -29,19 +31,19 @@ pub(super) struct Boundaries {
 impl Boundaries {
     /// What need not be made again is taken from `before`, which is of the same drawings.
     pub(super) fn new(
-        scene: &Scene,
-        drawings: &[Drawing],
+        layer: &LayerSpec,
+        drawings: &[Arc<Drawing>],
         on_outline: &[Landmark],
         before: Option<&Self>,
         begins: &mut dyn FnMut(Stage),
     ) -> Result<Self, PipelineError> {
         begins(Stage::Matching);
         let mut outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
-        let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
-        let refusal = |error| simplify_refusal(&scene.names(), error);
+        let options = layer.mesh.simplify.clone();
+        let refusal = |error| simplify_refusal(&layer.names(), error);
         let given = outlines.clone();
         let alone = || alone(&given, on_outline, &options, before);
-        let (matched, alone) = match_outlines(scene, &mut outlines, on_outline, alone)?;
+        let (matched, alone) = match_outlines(layer, &mut outlines, on_outline, alone)?;
         let alone = alone.map_err(refusal)?;
         begins(Stage::Simplification);
         let pinned: Vec<Vec<f64>> = on_outline
@@ -53,8 +55,8 @@ impl Boundaries {
         let simplified = simplification.polygons().map_err(refusal)?;
         Ok(Self {
             on_outline: on_outline.to_vec(),
-            reference: scene.reference,
-            tolerance: scene.mesh.simplify,
+            reference: layer.reference,
+            tolerance: layer.mesh.simplify.tolerance,
             outlines,
             matched,
             pinned,
@@ -63,9 +65,11 @@ impl Boundaries {
         })
     }
 
-    /// Whether they are those of this scene, too, whose drawings are the same.
-    pub(super) fn serve(&self, scene: &Scene, on_outline: &[Landmark]) -> bool {
-        self.on_outline == on_outline && self.reference == scene.reference && self.tolerance == scene.mesh.simplify
+    /// Whether they are those of this layer, too, whose drawings are the same.
+    pub(super) fn serve(&self, layer: &LayerSpec, on_outline: &[Landmark]) -> bool {
+        self.on_outline == on_outline
+            && self.reference == layer.reference
+            && self.tolerance == layer.mesh.simplify.tolerance
     }
 }
 
@@ -97,15 +101,15 @@ pub(super) struct Matched {
 /// Matches the outer rings, puts the holes of all poses in one order, and matches them; `beside` is other work, done where
 /// matching leaves processors idle.
 fn match_outlines<T: Send>(
-    scene: &Scene,
+    layer: &LayerSpec,
     outlines: &mut [Outline],
     landmarks: &[Landmark],
     beside: impl FnOnce() -> T + Send,
 ) -> Result<(Matched, T), PipelineError> {
-    let names = scene.names();
+    let names = layer.names();
     let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
     let mut options = MatchOptions {
-        reference: scene.reference,
+        reference: layer.reference,
         ..MatchOptions::default()
     };
     let refusal = |error| match_refusal(&names, error);

@@ -75,7 +75,7 @@ impl Scene {
         scene.poses = kept.iter().map(|&k| self.poses[k].clone()).collect();
         for pose in &mut scene.poses {
             if let PoseSource::Deformed(copy) = &mut pose.source {
-                copy.of = place(copy.of).unwrap_or(usize::MAX);
+                copy.copy.of = place(copy.copy.of).unwrap_or(usize::MAX);
             }
         }
         scene.reference = self.reference.and_then(place);
@@ -127,4 +127,9 @@ impl Scene {
             .collect();
         scene
     }
+}
+
+/// How messages begin that are about a layer.
+pub(super) fn prefix(layer: Option<&str>) -> String {
+    layer.map(|layer| format!("layer '{layer}': ")).unwrap_or_default()
 }

@@ -6,7 +6,9 @@
 //!
 //! Keys that a later release will serve are known and refused by name, never ignored.
 
+mod build_error;
 mod convert;
+mod drawings;
 mod error;
 mod file;
 mod layers;
@@ -15,13 +17,16 @@ mod settings;
 mod shape;
 mod shape_model;
 mod source;
+mod spec;
+mod workbench;
 
+pub use build_error::SceneBuildError;
 pub use error::{SceneError, SceneProblem};
 pub use layers::{LayerAnchor, SceneLayer};
 pub use new::{NewPose, scene_text};
 pub use settings::{
-    ArtChoice, DeformedCopy, DrawnSource, Facing, HandleMove, Holes, InputSettings, Layout, MeshSettings, PoseSource,
-    PoseSpaceSettings, Provider, Scene, SceneLandmark, ScenePath, ScenePose,
+    DeformedSource, DrawnSource, Holes, InputSettings, Layout, PoseSource, PoseSpaceSettings, Provider, Scene,
+    SceneLandmark, ScenePath, ScenePose,
 };
 pub use shape::{
     AxisSettings, JointScaling, JointSettings, JointShift, JointTurn, PseudoExample, ShapeExample, ShapeFile,
@@ -29,3 +34,4 @@ pub use shape::{
     SurfacePoints,
 };
 pub use shape_model::{ShapeForm, ShapeModel, ShapeModelError, ShapeSpace, ShapeTake};
+pub use workbench::{DrawingFiles, Workbench};

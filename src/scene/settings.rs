@@ -7,6 +7,7 @@ use crate::animation::Animation;
 use crate::blend::BlendOptions;
 use crate::input::Extent;
 use crate::math::Point;
+use crate::pipeline::{ArtChoice, DeformedCopy, Facing, MeshOptions};
 use crate::render::ColourBlend;
 use crate::weights::{PseudoPose, Radial, Range};
 
@@ -23,7 +24,7 @@ pub struct Scene {
     /// How drawings become outlines.
     pub input: InputSettings,
     /// How fine the mesh is.
-    pub mesh: MeshSettings,
+    pub mesh: MeshOptions,
     /// Whether the poses are where the file says.
     pub layout: Layout,
     /// How weights fall off over the pose space.
@@ -48,16 +49,6 @@ pub struct Scene {
     pub layers: Vec<SceneLayer>,
     /// What is played.
     pub animation: Animation,
-}
-
-/// Whether vector drawings are drawn as curves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum ArtChoice {
-    /// As curves, where all drawings of a layer are vector drawings.
-    #[default]
-    Curves,
-    /// From pixels.
-    Pixels,
 }
 
 /// Whether holes of the drawings are holes of the shape.
@@ -85,25 +76,6 @@ impl Default for InputSettings {
         Self {
             holes: Holes::Keep,
             threshold: 0.5,
-        }
-    }
-}
-
-/// How fine the mesh is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MeshSettings {
-    /// The error of the simplified boundary, as a fraction of a pose's diagonal.
-    pub simplify: f64,
-    /// The length of the mesh's edges, as a fraction of a pose's diagonal.
-    pub edge_length: f64,
-}
-
-impl Default for MeshSettings {
-    /// 2 % of the diagonal for the boundary, 5 % for the edges.
-    fn default() -> Self {
-        Self {
-            simplify: 0.02,
-            edge_length: 0.05,
         }
     }
 }
@@ -169,16 +141,6 @@ impl Default for PoseSpaceSettings {
     }
 }
 
-/// Whether a drawing is used as it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Facing {
-    /// As drawn.
-    #[default]
-    AsDrawn,
-    /// Reflected left to right on input.
-    Mirrored,
-}
-
 /// One pose of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScenePose {
@@ -200,7 +162,7 @@ pub enum PoseSource {
     /// A drawing of its own.
     Drawn(DrawnSource),
     /// Another pose, deformed.
-    Deformed(DeformedCopy),
+    Deformed(DeformedSource),
     /// Each of its layers has its own; see [`Scene::layers`].
     Layered,
 }
@@ -220,25 +182,13 @@ pub struct DrawnSource {
     pub extent: Extent,
 }
 
-/// A copy of another pose whose handles are moved as rigidly as possible (NWM 3.2). It has the other's picture, and what
-/// reflects that reflects it, too.
+/// A copy of another pose, deformed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DeformedCopy {
-    /// The pose that is deformed; it may be a copy itself. Never the pose itself, directly or by way of others.
-    pub of: usize,
+pub struct DeformedSource {
     /// The line of the scene file with the handles.
     pub line: usize,
-    /// At least one, but in a layer that stays as it is.
-    pub handles: Vec<HandleMove>,
-}
-
-/// A point of a pose and where it goes, in the coordinates of the drawing as it is in its file.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HandleMove {
-    /// On the pose that is deformed.
-    pub from: Point,
-    /// On the copy.
-    pub to: Point,
+    /// Which pose is deformed, and how. In a layer that stays as it is there are no handles.
+    pub copy: DeformedCopy,
 }
 
 /// A point that the artist names on several poses.
@@ -315,17 +265,11 @@ impl Scene {
         for _ in 0..=self.poses.len() {
             match &self.poses.get(at)?.source {
                 PoseSource::Drawn(drawing) => return Some((at, drawing)),
-                PoseSource::Deformed(copy) => at = copy.of,
+                PoseSource::Deformed(copy) => at = copy.copy.of,
                 PoseSource::Layered => return None,
             }
         }
         None
-    }
-
-    /// The scene without its deformed copies: what is read and matched.
-    #[must_use]
-    pub fn only_drawn(&self) -> Self {
-        self.with_poses(&self.drawn_poses())
     }
 
     /// A short name for files made from this scene: the file's own, or its folder's if it is called `scene.toml`.

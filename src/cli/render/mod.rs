@@ -16,7 +16,6 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use inbetween::animation::Background;
-use inbetween::pipeline::laid_out;
 use inbetween::scene::Scene;
 
 use self::format::Format;
@@ -107,9 +106,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
             "--resume works with a folder of files only; a single file is written whole, so render it again".to_owned(),
         ));
     }
-    let scene = Scene::open(&arguments.scene)?;
-    let file = scene.file.display().to_string();
-    let mut scene = laid_out(scene).context(file)?;
+    let mut scene = Scene::open(&arguments.scene)?.with_automatic_places()?;
     if let Some(fps) = arguments.fps {
         scene.animation.fps = fps;
     }

@@ -72,7 +72,7 @@ fn each_layer_is_a_scene_of_its_own() {
     // The copy is one of `b`, which has another index in the layer; the body has no handle and stays.
     let copies: Vec<(usize, usize)> = [&body.scene.poses[3], &arm.scene.poses[2]]
         .map(|pose| match &pose.source {
-            PoseSource::Deformed(copy) => (copy.of, copy.handles.len()),
+            PoseSource::Deformed(copy) => (copy.copy.of, copy.copy.handles.len()),
             _ => panic!("a copy"),
         })
         .to_vec();
