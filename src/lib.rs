@@ -76,6 +76,8 @@ pub mod animation;
 
 pub mod export;
 
+pub mod interop;
+
 // What wires them together, and what stands above it.
 pub mod pipeline;
 

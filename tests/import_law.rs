@@ -7,8 +7,10 @@ use std::path::{Path, PathBuf};
 const FOUNDATIONS: [&str; 4] = ["math", "mesh", "outline", "solve"];
 
 /// What each stage may use of other stages: types that it consumes or hands on.
-const STAGES: [(&str, &[&str]); 11] = [
+const STAGES: [(&str, &[&str]); 12] = [
     ("animation", &[]),
+    // Paths of other crates become and are made of drawings' and frames' curves.
+    ("interop", &["input", "render"]),
     // OBJ files hold forms.
     ("input", &["shape3d"]),
     ("matching", &[]),

@@ -31,6 +31,8 @@ mod spine;
 mod sprites;
 mod svg;
 mod timing;
+#[cfg(feature = "lyon")]
+mod vector_mesh;
 mod webp;
 
 pub use apng::ApngWriter;
@@ -51,6 +53,8 @@ pub use shape_keys::{ShapeMotion, ShapeReport, ShapeState};
 pub use spine::{SpineFiles, spine_files, write_spine};
 pub use sprites::SpriteSheet;
 pub use svg::{svg_text, svg_text_with};
+#[cfg(feature = "lyon")]
+pub use vector_mesh::{MeshPart, MeshVertex, PartKind, VectorMesh, VectorMeshError, VectorTessellator};
 pub use webp::WebPWriter;
 
 /// Whether an animation plays once or again and again.
