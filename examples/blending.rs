@@ -15,9 +15,8 @@ use std::path::{Path, PathBuf};
 
 use inbetween::blend::{BlendOptions, RigidBlend, Stretch};
 use inbetween::export::Palette;
-use inbetween::input::Drawing;
 use inbetween::math::{Point, point};
-use inbetween::pipeline::{map_drawings, read_drawings};
+use inbetween::pipeline::{LayerSpec, map_layer};
 use inbetween::pose::{HandleDeformation, Mapping};
 use inbetween::render::{Camera, Frame, PaintOptions, Painter, PoseTexture, Silhouette, Texture};
 use inbetween::scene::Scene;
@@ -195,7 +194,7 @@ impl Shape {
 /// A scene that is read and mapped.
 struct Cast {
     scene: Scene,
-    drawings: Vec<Drawing>,
+    layer: LayerSpec,
     mapping: Mapping,
     silhouette: Silhouette,
 }
@@ -205,12 +204,12 @@ impl Cast {
     fn read(name: &str) -> Result<Self, Box<dyn Error>> {
         let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
         let scene = Scene::open(&data.join(name).join("scene.toml"))?;
-        let drawings = read_drawings(&scene)?;
-        let (mapping, _) = map_drawings(&scene, &drawings)?;
+        let layer = scene.layer_spec(0)?;
+        let (mapping, _) = map_layer(&layer)?;
         Ok(Self {
             silhouette: Silhouette::new(&mapping),
             scene,
-            drawings,
+            layer,
             mapping,
         })
     }
@@ -257,10 +256,10 @@ impl Cast {
     }
 
     fn painter(&self, camera: Camera) -> Painter {
-        let drawn = self.scene.drawn_poses();
-        let textures = (self.drawings.iter().zip(&drawn))
-            .map(|(drawing, &drawn_on)| PoseTexture {
-                texture: Texture::new(&drawing.picture, &drawing.outline, camera.scale()),
+        let drawn = self.layer.drawn_poses();
+        let textures = (self.layer.drawn().zip(&drawn))
+            .map(|(drawn, &drawn_on)| PoseTexture {
+                texture: Texture::new(&drawn.drawing.picture, &drawn.drawing.outline, camera.scale()),
                 drawn_on,
             })
             .collect();
@@ -268,7 +267,7 @@ impl Cast {
         Painter::new(
             &self.mapping,
             textures,
-            self.scene.shown_drawings(),
+            self.layer.shown_drawings(),
             self.silhouette.clone(),
             camera,
             PaintOptions::default(),

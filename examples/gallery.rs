@@ -16,11 +16,13 @@ mod stages;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use inbetween::animation::Background;
 use inbetween::export::{Backdrop, ColourCount, GifWriter, Palette, PendingFile, Repetition, png_bytes};
-use inbetween::pipeline::{Character, ShapeModel, map_drawings, read_drawings, weight_provider};
+use inbetween::pipeline::{ArtChoice, map_layer};
 use inbetween::render::Frame;
 use inbetween::render::diagram::{self, Diagram, DiagramPose, Sections};
-use inbetween::scene::{ArtChoice, Background, Scene, ShapeScene};
+use inbetween::scene::{Scene, ShapeModel, ShapeScene};
+use inbetween::weights::WeightProvider as _;
 use stages::common::Sheet;
 
 type Drawn = Result<(), Box<dyn Error>>;
@@ -73,7 +75,7 @@ fn animation(name: &str, size: [usize; 2], fps: f64, folder: &Path) -> Drawn {
     let mut scene = scene(name)?;
     scene.animation.background = Background::Colour([255; 4]);
     scene.animation.fps = fps;
-    let character = Character::new(&scene, size)?;
+    let character = scene.character(size, 1)?;
     let frames: Vec<Frame> = (0..scene.animation.frame_count())
         .map(|index| character.frame(&scene.animation, index))
         .collect::<Result<_, _>>()?;
@@ -81,21 +83,22 @@ fn animation(name: &str, size: [usize; 2], fps: f64, folder: &Path) -> Drawn {
     for frame in &frames {
         colours.add(frame);
     }
-    let file = PendingFile::create(&folder.join(format!("{name}.gif")))?;
+    let mut file = PendingFile::create(&folder.join(format!("{name}.gif")))?;
     let palette = Palette::new(&colours);
-    let mut writer = GifWriter::new(file, size, fps, palette, Backdrop::Opaque, Repetition::Forever)?;
+    let mut writer = GifWriter::new(&mut file, size, fps, palette, Backdrop::Opaque, Repetition::Forever)?;
     for frame in &frames {
         writer.add(frame)?;
     }
-    Ok(writer.finish()?)
+    writer.finish()?;
+    Ok(file.commit()?)
 }
 
 /// What `inbetween show` draws of the walker.
 fn explained(folder: &Path) -> Drawn {
     let scene = scene("walker")?;
-    let provider = weight_provider(&scene, None)?;
-    let drawings = read_drawings(&scene)?;
-    let (mapping, report) = map_drawings(&scene, &drawings)?;
+    let provider = scene.weights(None)?;
+    let layer = scene.layer_spec(0)?;
+    let (mapping, report) = map_layer(&layer)?;
     let poses: Vec<DiagramPose> = scene
         .poses
         .iter()
@@ -133,7 +136,7 @@ fn curves(folder: &Path) -> Drawn {
     for (row, art) in [ArtChoice::Pixels, ArtChoice::Curves].into_iter().enumerate() {
         let mut scene = scene("face")?;
         scene.art = art;
-        let character = Character::new(&scene, FACE)?;
+        let character = scene.character(FACE, 1)?;
         let pose = |name: &str| {
             let found = scene.poses.iter().position(|pose| pose.name == name);
             found.ok_or_else(|| format!("no pose '{name}'"))

@@ -1,21 +1,21 @@
 //! Every stage of the pipeline as a picture, from the drawings of `data/walker` to frames.
 //!
 //! `cargo run --release --example stages -- FOLDER` writes `1-input.png` to `8-frames.png` there. Here the stages are called
-//! one by one; `pipeline::Character` does the same, for every scene, in one call.
+//! one by one; `Scene::character` does the same, for every scene, in one call.
 
 pub(crate) mod common;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use inbetween::blend::{BlendOptions, RigidBlend};
-use inbetween::compatible::{CompatibleMesh, RefineOptions, SimplifyOptions, refine, simplify, triangulate};
+use inbetween::compatible::{CompatibleMesh, refine, simplify, triangulate};
 use inbetween::export::png_bytes;
 use inbetween::input::Drawing;
 use inbetween::matching::{Correspondence, Landmark, MatchOptions, match_rings};
 use inbetween::math::{Point, point};
 use inbetween::outline::{ArcLength, Outline, Ring};
-use inbetween::pipeline::{Character, read_drawings, weight_provider};
 use inbetween::pose::PoseSet;
 use inbetween::scene::Scene;
 use inbetween::weights::WeightProvider;
@@ -36,7 +36,8 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
         "/data/walker/scene.toml"
     )))?;
 
-    let drawings = read_drawings(&scene)?;
+    let layer = scene.layer_spec(0)?;
+    let drawings: Vec<Arc<Drawing>> = layer.drawn().map(|drawn| Arc::clone(&drawn.drawing)).collect();
     save(draw_input(&drawings)?, &folder, "1-input")?;
 
     let outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
@@ -58,19 +59,17 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
         .iter()
         .filter_map(|l| l.at.iter().copied().collect())
         .collect();
-    let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
-    let simplified = simplify(&outlines, &[matched.correspondence], &kept, &options)?;
+    let simplified = simplify(&outlines, &[matched.correspondence], &kept, &scene.mesh.simplify)?;
     save(draw_polygons(&outlines, &simplified.polygons)?, &folder, "3-simplified")?;
 
     let (bare, _) = triangulate(&simplified.polygons, &inside)?;
     save(draw_meshes(&bare, &bare.positions)?, &folder, "4-triangulated")?;
 
-    let options = RefineOptions::default().with_edge_length(scene.mesh.edge_length);
-    let (mesh, _) = refine(&bare, &options)?;
+    let (mesh, _) = refine(&bare, &scene.mesh.refine)?;
     save(draw_meshes(&mesh, &mesh.positions)?, &folder, "5-refined")?;
 
-    let provider = weight_provider(&scene, None)?;
-    save(draw_weights(&scene, provider.as_ref())?, &folder, "6-weights")?;
+    let provider = scene.weights(None)?;
+    save(draw_weights(&scene, &provider)?, &folder, "6-weights")?;
 
     let names = scene.names();
     let poses = PoseSet::new(
@@ -86,7 +85,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     }
     save(draw_meshes(&mesh, &blended)?, &folder, "7-blended")?;
 
-    let character = Character::new(&scene, CELL.map(|side| side as usize))?;
+    let character = scene.character(CELL.map(|side| side as usize), 1)?;
     let mut strip = row_of(STEPS)?;
     for (step, weights) in steps(&scene)?.into_iter().enumerate() {
         strip.paste([step as u32 * CELL[0], 0], &character.frame_of(&weights)?)?;
@@ -133,7 +132,7 @@ fn steps(scene: &Scene) -> Result<Vec<Vec<f64>>, String> {
     Ok((0..STEPS).map(at_step).collect())
 }
 
-fn draw_input(drawings: &[Drawing]) -> Result<Sheet, String> {
+fn draw_input(drawings: &[Arc<Drawing>]) -> Result<Sheet, String> {
     let mut strip = row_of(drawings.len())?;
     for (pose, drawing) in drawings.iter().enumerate() {
         let fit = Fit::new(pose, drawing.outline.outer().points());

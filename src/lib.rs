@@ -10,7 +10,6 @@
 //!
 //! | stage | from | to |
 //! |---|---|---|
-//! | [`scene`] | `scene.toml` | [`Scene`](scene::Scene) |
 //! | [`input`] | a file's bytes | [`Drawing`](input::Drawing): outline and pixels |
 //! | [`matching`] | N outlines | [`Correspondence`](matching::Correspondence) |
 //! | [`compatible`] | N outlines in correspondence | [`CompatibleMesh`](compatible::CompatibleMesh) |
@@ -22,15 +21,17 @@
 //! | [`export`] | frames | PNG, GIF, video, SVG, Lottie, glTF, … |
 //! | [`shape3d`] | forms in space and a place among them | a form in space |
 //!
-//! [`pipeline`] wires them together; [`Character`](pipeline::Character) is the whole of it, built once and asked for frames from any thread:
+//! [`pipeline`] wires them together: a [`CharacterSpec`](pipeline::CharacterSpec), a plain value that holds drawings and options, becomes a
+//! [`Character`](pipeline::Character), built once and asked for frames from any thread. The example `two_drawings` makes one of pixels in
+//! memory. [`scene`] reads `scene.toml` and makes one of it:
 //!
 //! ```
-//! use inbetween::{pipeline::Character, scene::Scene};
+//! use inbetween::scene::Scene;
 //! use std::path::Path;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let scene = Scene::open(Path::new("data/walker/scene.toml"))?;
-//! let character = Character::new(&scene, [96, 108])?;
+//! let character = scene.character([96, 108], 1)?;
 //! let frame = character.frame_at(&[0.5, 0.2])?;
 //! assert_eq!((frame.width, frame.height), (96, 108));
 //! # Ok(())
@@ -75,12 +76,16 @@ pub mod render;
 
 pub mod shape3d;
 
-// What stands around them.
-pub mod scene;
+pub mod animation;
 
 pub mod export;
 
+pub mod interop;
+
+// What wires them together, and what stands above it.
 pub mod pipeline;
+
+pub mod scene;
 
 /// The README's example compiles.
 #[cfg(doctest)]

@@ -1,18 +1,20 @@
-//! Where the stages are wired together: a scene in; its mapping, its weights, its frames out.
+//! Where the stages are wired together: a character's specification in; its mappings, its weights, its frames out.
 //!
 //! ```text
-//! Scene --read_drawings--> [Drawing] --map_drawings--> Mapping
+//! CharacterSpec --LayerSpec--> drawings --map_layer--> Mapping
 //!                                                         |
 //!                     RigidBlend, Painter, WeightProvider v
 //! place in pose space --weights--> w --blend--> vertices --paint--> Frame          (Character)
 //! ```
 //!
-//! Everything left of `Character` is computed once; a frame needs two triangular solves and a pass over the pixels.
-//! A [`Character`] is immutable and can be asked from many threads at once.
+//! Everything left of `Character` is computed once ([`Build`]); a frame needs two triangular solves and a pass over the pixels.
+//! A [`Character`] is immutable and can be asked from many threads at once. Nothing here knows a file: whoever has one makes a
+//! [`CharacterSpec`] of it, as [`scene`](crate::scene) does.
 
 mod art;
 mod blending;
 mod boundaries;
+mod build;
 mod character;
 mod deformed;
 mod drawings;
@@ -28,24 +30,25 @@ mod mapping;
 mod named;
 mod reach;
 mod report;
-mod shape;
 mod sides;
+mod spec;
 mod triangulation;
 mod weighting;
-mod workbench;
 
+pub use build::Build;
 pub use character::Character;
 pub use deformed::DeformedPose;
-pub use drawings::{read_drawing_of, read_drawings};
 pub use error::PipelineError;
 pub use figure::Posed;
 pub use landmarks::INTERIOR_DEPTH;
 pub use layer::{LayerShape, PosedLayer};
-pub use layout::{automatic_places, laid_out};
-pub use mapping::{map_drawings, map_drawings_observed};
+pub use layout::automatic_places;
+pub use mapping::{map_layer, map_layer_observed};
 pub use reach::{Reach, ReachOptions, ShapePoint, reach, reach_landmarks, reach_near};
 pub use report::{MappingReport, Stage};
-pub use shape::{ShapeForm, ShapeModel, ShapeModelError, ShapeSpace, ShapeTake};
-pub use triangulation::{LandmarkLabel, Refinement, triangulate_polygons};
-pub use weighting::{EditableWeights, checked_weights, editable_weights, weight_provider};
-pub use workbench::{DrawingFiles, Workbench};
+pub use spec::{
+    ArtChoice, Attachment, CharacterSpec, DeformedCopy, DrawnPose, Facing, HandleMove, LandmarkSpec, LayerSpec,
+    MeshOptions, PathSpec, Places, PoseShape, PoseSpec, SpaceSpec, SpecError, SvgSource, TextureSpec, WeightOptions,
+};
+pub use triangulation::{Refinement, triangulate_polygons};
+pub use weighting::{EditableWeights, checked_weights, editable_weights};

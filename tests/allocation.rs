@@ -40,9 +40,12 @@ fn the_counter_counts() {
 #[test]
 fn a_frame_allocates_nothing() {
     let poses = poses(60, 3);
-    let soft = [(0, 1.0), (59, 10.0)].map(|(vertex, stiffness)| SoftAnchor { vertex, stiffness });
+    let soft = [(0, 1.0), (59, 10.0)].map(|(vertex, stiffness)| SoftAnchor {
+        point: vertex,
+        stiffness,
+    });
     for stretch in [Stretch::Linear, Stretch::Limited, Stretch::Log] {
-        for anchor in [Anchor::Centroid, Anchor::Vertex(3), Anchor::Soft(soft.to_vec())] {
+        for anchor in [Anchor::Centroid, Anchor::Point(3), Anchor::Soft(soft.to_vec())] {
             let options = BlendOptions {
                 stretch,
                 anchor,

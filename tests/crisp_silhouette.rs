@@ -4,9 +4,11 @@
 //! silhouette, which is the total variation of alpha: two faint edges in the place of one have its length together, and
 //! twice its area. An exactly covered straight edge has 0.6 to 0.8 pixels.
 
-use inbetween::pipeline::{Character, laid_out};
+use inbetween::animation::Background;
+
+use inbetween::pipeline::ArtChoice;
 use inbetween::render::Frame;
-use inbetween::scene::{ArtChoice, Background, Scene};
+use inbetween::scene::Scene;
 
 /// Between poses at most this times the widest of the poses.
 const WIDER: f64 = 1.5;
@@ -26,10 +28,13 @@ fn ramp_px(frame: &Frame) -> f64 {
 
 fn check(name: &str, art: ArtChoice) {
     let path = format!("{}/data/{name}/scene.toml", env!("CARGO_MANIFEST_DIR"));
-    let mut scene = laid_out(Scene::open(path.as_ref()).expect("a scene")).expect("places");
+    let mut scene = Scene::open(path.as_ref())
+        .expect("a scene")
+        .with_automatic_places()
+        .expect("places");
     scene.animation.background = Background::Transparent;
     scene.art = art;
-    let character = Character::new(&scene, [400, 400]).expect("a character");
+    let character = scene.character([400, 400], 1).expect("a character");
     let count = scene.poses.len();
     let ramp = |weights: &[f64]| ramp_px(&character.frame_of(weights).expect("a frame"));
     let unit = |pose: usize| (0..count).map(|k| f64::from(u8::from(k == pose))).collect::<Vec<f64>>();

@@ -4,7 +4,7 @@ mod workshop;
 
 use inbetween::math::Point;
 use inbetween::mesh::PointLocator;
-use inbetween::pipeline::{Character, map_drawings, read_drawings};
+use inbetween::pipeline::map_layer;
 use inbetween::pose::{Mapping, Repair};
 use inbetween::scene::Scene;
 use workshop::Workshop;
@@ -41,9 +41,9 @@ fn a_copy_and_its_copy_are_poses_like_any_other() {
         "{ from = [14, 34], to = [14, 34] }, { from = [26, 34], to = [26, 34] }, { from = [29, 11], to = [20, 8] }";
     let workshop = with_copies(&(copy("back", "bent", "[0, 2]", back) + &copy("bent", "tall", "[0, 1]", BENT)));
     let scene = scene_of(&workshop);
-    let drawings = read_drawings(&scene).expect("drawings");
-    assert_eq!(drawings.len(), 2);
-    let (mapping, report) = map_drawings(&scene, &drawings).expect("a mapping");
+    let layer = scene.layer_spec(0).expect("drawings");
+    assert_eq!(layer.drawn().count(), 2);
+    let (mapping, report) = map_layer(&layer).expect("a mapping");
     assert_eq!(mapping.poses.names(), ["tall", "wide", "back", "bent"]);
     mapping.check().expect("valid");
     // Handles are met: the place is carried by its triangle.
@@ -113,8 +113,8 @@ fn handles_of_a_reflected_drawing_are_reflected_with_it() {
         let start = text.find("[[landmark]]").expect("landmarks");
         workshop.file("scene.toml", &text.as_bytes()[..start]);
         let scene = scene_of(&workshop);
-        let drawings = read_drawings(&scene).expect("drawings");
-        let (mapping, _) = map_drawings(&scene, &drawings).expect("a mapping");
+        let layer = scene.layer_spec(0).expect("drawings");
+        let (mapping, _) = map_layer(&layer).expect("a mapping");
         for (p, q) in mapping.poses.positions()[0].iter().zip(&mapping.poses.positions()[2]) {
             assert!((p + Point::new(x, -3.0) - q).norm() < 1e-9, "{x}: {p} {q}");
         }
@@ -147,11 +147,11 @@ fn handles_that_cannot_be_are_refused_by_name() {
 fn a_landmark_reaches_what_a_place_shows() {
     let workshop = with_copies(&copy("bent", "tall", "[0, 1]", BENT));
     let scene = scene_of(&workshop);
-    let character = Character::new(&scene, [48, 36]).expect("a character");
+    let character = scene.character([48, 36], 1).expect("a character");
     character.layers()[0].mapping().check().expect("valid");
     // Where the eye is on the copy.
-    let drawings = read_drawings(&scene).expect("drawings");
-    let (_, report) = map_drawings(&scene, &drawings).expect("a mapping");
+    let layer = scene.layer_spec(0).expect("drawings");
+    let (_, report) = map_layer(&layer).expect("a mapping");
     let eye = report.landmarks.iter().find(|l| l.name == "eye").expect("an eye").at[2][0];
     let handle = format!("eye={},{}", eye.x, eye.y);
     let text = workshop.succeeds(&["reach", "scene.toml", "--handle", &handle, "-o", "-"]);

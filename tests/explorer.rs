@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use inbetween::export::svg_text;
 use inbetween::math::Point;
-use inbetween::pipeline::Character;
+
 use inbetween::scene::Scene;
 use serde_json::{Value, json};
 use tungstenite::protocol::Role;
@@ -301,7 +301,9 @@ fn frames_are_those_of_the_command() {
         let explorer = Explorer::of(name, as_it_is);
         assert_eq!(explorer.settled()["problems"], json!([]));
         let scene = Scene::open(&explorer.scene()).expect("a scene");
-        let character = Character::new(&scene, scene.animation.size.map(|side| side as usize)).expect("a character");
+        let character = scene
+            .character(scene.animation.size.map(|side| side as usize), 1)
+            .expect("a character");
         for place in [[0.3, 0.0], [0.8, 0.4]] {
             let place = &place[..scene.dimension()];
             let text = place.iter().map(f64::to_string).collect::<Vec<_>>().join(",");

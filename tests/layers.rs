@@ -25,7 +25,7 @@ fn file() -> PathBuf {
 /// Mapped once for all tests.
 static BEAR: LazyLock<(Scene, Character)> = LazyLock::new(|| {
     let scene = Scene::open(&file()).expect("a scene");
-    let character = Character::new(&scene, SIZE).expect("a character");
+    let character = scene.character(SIZE, 1).expect("a character");
     (scene, character)
 });
 

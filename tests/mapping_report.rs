@@ -2,7 +2,7 @@
 
 mod workshop;
 
-use inbetween::pipeline::{MappingReport, Stage, map_drawings, map_drawings_observed, read_drawings};
+use inbetween::pipeline::{MappingReport, Stage, map_layer, map_layer_observed};
 use inbetween::pose::{LandmarkKind, Mapping, MeshQuality};
 use inbetween::scene::Scene;
 use workshop::Workshop;
@@ -23,11 +23,11 @@ fn two() -> Workshop {
 
 fn mapped(workshop: &Workshop) -> (Mapping, MappingReport, Vec<Stage>) {
     let scene = Scene::open(&workshop.path("scene.toml")).expect("a scene");
-    let drawings = read_drawings(&scene).expect("drawings");
+    let layer = scene.layer_spec(0).expect("drawings");
     let mut stages = Vec::new();
-    let observed = map_drawings_observed(&scene, &drawings, &mut |stage| stages.push(stage));
+    let observed = map_layer_observed(&layer, &mut |stage| stages.push(stage));
     let (mapping, report) = observed.expect("a mapping");
-    let (plain, _) = map_drawings(&scene, &drawings).expect("a mapping");
+    let (plain, _) = map_layer(&layer).expect("a mapping");
     assert!(plain == mapping, "watching must change nothing");
     (mapping, report, stages)
 }

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use inbetween::pipeline::Character;
 use inbetween::scene::Scene;
 
 fn scene_file(name: &str) -> PathBuf {
@@ -15,7 +14,7 @@ fn scene_file(name: &str) -> PathBuf {
 /// The scene's character, its mapping proven, every pose seen at its place.
 fn shown(name: &str) {
     let scene = Scene::open(&scene_file(name)).expect("a scene");
-    let character = Character::new(&scene, [192, 216]).expect("a character");
+    let character = scene.character([192, 216], 1).expect("a character");
     for layer in character.layers() {
         layer.mapping().check().expect("a valid mapping");
         assert_eq!(layer.mapping().poses.len(), layer.poses().len());

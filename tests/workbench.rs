@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use inbetween::pipeline::{Character, DrawingFiles, Workbench};
-use inbetween::scene::Scene;
+use inbetween::scene::{DrawingFiles, Scene, Workbench};
 
 fn file() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data/clown/scene.toml")
@@ -72,7 +71,7 @@ fn edits_repeat_what_they_concern_and_nothing_else() {
     assert_eq!(meshes, [true, true, true, false, false]);
     assert_eq!(pictures, [true; 5]);
     let size = bench.scene().animation.size.map(|side| side as usize);
-    let character = Character::new(&scene(&text), size).expect("a character");
+    let character = scene(&text).character(size, 1).expect("a character");
     let posed = character.posed_at(&[0.3, 0.4]).expect("posed");
     let mut weights = Vec::new();
     inbetween::weights::WeightProvider::weights(bench.weights().as_ref(), &[0.3, 0.4], &mut weights).expect("weights");
@@ -87,7 +86,7 @@ fn its_character_draws_what_a_new_one_draws() {
         let bench = Workbench::new(&scene).expect("a workbench");
         let own = bench.character().expect("a character");
         let size = scene.animation.size.map(|side| side as usize);
-        let anew = Character::new(&scene, size).expect("a character");
+        let anew = scene.character(size, 1).expect("a character");
         let place = vec![0.3; scene.dimension()];
         assert_eq!(
             own.frame_at(&place).expect("a frame"),
@@ -103,7 +102,7 @@ fn edits_that_change_no_art_leave_the_character() {
     let text = std::fs::read_to_string(file()).expect("readable");
     let bench = Workbench::new(&scene(&text)).expect("a workbench");
     let moved = scene(&text.replace("at = [1.0, 0.0]", "at = [1.25, 0.0]"));
-    let weights = inbetween::pipeline::editable_weights(&moved, None).expect("weights");
+    let weights = moved.weights(None).expect("weights");
     assert!(
         bench
             .reweighted(&moved, std::sync::Arc::new(weights))

@@ -84,10 +84,10 @@ impl Anchors {
         let mut soft = Vec::new();
         match anchor {
             Anchor::Centroid => {}
-            Anchor::Vertex(vertex) => holds[piece_of_vertex[existing(*vertex)?]] = Hold::At(vec![(*vertex, 1.0)]),
+            Anchor::Point(vertex) => holds[piece_of_vertex[existing(*vertex)?]] = Hold::At(vec![(*vertex, 1.0)]),
             Anchor::Soft(anchors) => {
                 for of in anchors {
-                    holds[piece_of_vertex[existing(of.vertex)?]] = Hold::Soft;
+                    holds[piece_of_vertex[existing(of.point)?]] = Hold::Soft;
                     if !(of.stiffness > 0.0 && of.stiffness.is_finite()) {
                         return Err(BlendError::BadOption {
                             option: "the stiffness of an anchor",
@@ -96,9 +96,9 @@ impl Anchors {
                         });
                     }
                     soft.push(Soft {
-                        vertex: of.vertex,
+                        vertex: of.point,
                         stiffness: of.stiffness,
-                        in_poses: poses.positions().iter().map(|positions| positions[of.vertex]).collect(),
+                        in_poses: poses.positions().iter().map(|positions| positions[of.point]).collect(),
                     });
                 }
             }

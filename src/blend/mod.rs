@@ -88,22 +88,25 @@ impl Stretch {
 }
 
 /// What moves linearly in the weights, or as the caller of a frame says ([`RigidBlend::blend_anchored`]).
+///
+/// A point is given by its number: a vertex of the mesh, or a landmark where the mesh is not known yet
+/// ([`BlendOptions::with_points`]).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Anchor {
     /// The centroid, by the reference's triangle areas.
     #[default]
     Centroid,
-    /// This vertex, exactly. Mesh components without it keep their centroids.
-    Vertex(usize),
-    /// Several vertices, each as far as the shape gives way. Mesh components without any keep their centroids.
+    /// This point, exactly. Mesh components without it keep their centroids.
+    Point(usize),
+    /// Several points, each as far as the shape gives way. Mesh components without any keep their centroids.
     Soft(Vec<SoftAnchor>),
 }
 
-/// A vertex that is drawn towards a place.
+/// A point that is drawn towards a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SoftAnchor {
-    /// Which vertex.
-    pub vertex: usize,
+    /// Which point; see [`Anchor`].
+    pub point: usize,
     /// How strongly, a number without unit: at 1 it counts about as much as the shape of the triangles around it, at
     /// 1000 it is met to a thousandth or so of what the shape gives way elsewhere.
     pub stiffness: f64,
@@ -120,12 +123,12 @@ pub enum FrameGuard {
     Repair,
 }
 
-/// A disc on the mesh around a vertex in which the shape is stiffer, or may not be stretched far. Fades smoothly
+/// A disc on the mesh around a point in which the shape is stiffer, or may not be stretched far. Fades smoothly
 /// between half its radius and its radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Region {
-    /// The vertex in the middle.
-    pub vertex: usize,
+    /// The point in the middle; see [`Anchor`].
+    pub point: usize,
     /// How far it reaches along the mesh, as a fraction of a pose's diagonal.
     pub radius: f64,
     /// What the energy of its triangles is multiplied by; 1 changes nothing.
@@ -149,6 +152,40 @@ pub struct BlendOptions {
     pub regions: Vec<Region>,
     /// Default: [`FrameGuard::Off`].
     pub guard: FrameGuard,
+}
+
+impl BlendOptions {
+    /// The options with every point replaced by what `number_of` makes of its number: from landmarks to vertices.
+    #[must_use]
+    pub fn with_points(&self, number_of: impl Fn(usize) -> usize) -> Self {
+        let mut options = self.clone();
+        match &mut options.anchor {
+            Anchor::Centroid => {}
+            Anchor::Point(point) => *point = number_of(*point),
+            Anchor::Soft(anchors) => {
+                for anchor in anchors {
+                    anchor.point = number_of(anchor.point);
+                }
+            }
+        }
+        for region in &mut options.regions {
+            region.point = number_of(region.point);
+        }
+        options
+    }
+
+    /// The points that the options name, the anchor's first.
+    pub fn points(&self) -> impl Iterator<Item = usize> + '_ {
+        let (one, soft) = match &self.anchor {
+            Anchor::Centroid => (None, [].as_slice()),
+            Anchor::Point(point) => (Some(*point), [].as_slice()),
+            Anchor::Soft(anchors) => (None, anchors.as_slice()),
+        };
+        let regions = self.regions.iter().map(|region| region.point);
+        one.into_iter()
+            .chain(soft.iter().map(|anchor| anchor.point))
+            .chain(regions)
+    }
 }
 
 /// Why there is no blend.

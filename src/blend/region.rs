@@ -46,7 +46,7 @@ impl Paint {
         let edges = mean_edges(poses);
         for region in regions {
             check(poses, region)?;
-            let distances = distances(&edges, region.vertex);
+            let distances = distances(&edges, region.point);
             for (t, triangle) in triangles.iter().enumerate() {
                 let away = triangle.iter().map(|&vertex| distances[vertex]).sum::<f64>() / 3.0;
                 let share = 1.0 - smooth_step(away, FULL * region.radius, region.radius);
@@ -62,9 +62,9 @@ impl Paint {
 
 fn check(poses: &PoseSet, region: &Region) -> Result<(), BlendError> {
     let count = poses.topology().vertex_count();
-    if region.vertex >= count {
+    if region.point >= count {
         return Err(BlendError::NoSuchVertex {
-            vertex: region.vertex,
+            vertex: region.point,
             count,
         });
     }

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use anyhow::Context as _;
+use inbetween::animation::Background;
 use inbetween::export::{png_bytes, svg_text};
-use inbetween::pipeline::{Character, checked_weights, laid_out};
-use inbetween::scene::{Background, Scene};
+use inbetween::pipeline::checked_weights;
+use inbetween::scene::Scene;
 
 use super::output::Output;
 use super::values::{Grid, Numbers, background, supersample};
@@ -67,16 +68,14 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         super::weights::check_place(place, &scene)?;
     }
     let output = Output::open(&arguments.output)?;
-    let file = scene.file.display().to_string();
-    let mut scene = laid_out(scene).context(file)?;
+    let mut scene = scene.with_automatic_places()?;
     if let Some(background) = arguments.background {
         scene.animation.background = background;
     }
     let size = arguments
         .size
         .map_or(scene.animation.size.map(|side| side as usize), |grid| grid.0);
-    let character = Character::supersampled(&scene, size, arguments.supersample)
-        .with_context(|| scene.file.display().to_string())?;
+    let character = scene.character(size, arguments.supersample)?;
     for note in character.notes() {
         verbosity.note(&format!("note: {note}"));
     }

@@ -1,8 +1,8 @@
 //! Rendering many frames in parallel and handing them on in order.
 
+use inbetween::animation::Animation;
 use inbetween::pipeline::{Character, PipelineError};
 use inbetween::render::Frame;
-use inbetween::scene::Animation;
 use rayon::prelude::*;
 
 use super::Verbosity;

@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context as _;
-use inbetween::pipeline::{map_drawings_observed, read_drawings};
+use inbetween::pipeline::map_layer_observed;
 use inbetween::scene::Scene;
 
 use super::layer;
@@ -38,18 +37,17 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     let scene = Scene::open(&arguments.scene)?;
     let scene = layer::chosen(scene, arguments.layer.as_deref())?;
     let output = Output::open(&arguments.output)?;
-    let in_scene = || scene.file.display().to_string();
     let mut clock = StageClock::start();
-    let drawings = read_drawings(&scene).with_context(in_scene)?;
-    let observed = map_drawings_observed(&scene, &drawings, &mut |stage| clock.begins(stage));
+    let layer = scene.layer_spec(0)?;
+    let observed = map_layer_observed(&layer, &mut |stage| clock.begins(stage));
     clock.stop();
-    let (mapping, report) = observed.with_context(in_scene)?;
+    let (mapping, report) = observed.map_err(|error| scene.refusal(error))?;
     for note in &report.notes {
         verbosity.note(&format!("note: {note}"));
     }
     output.write(mapping.to_json().as_bytes())?;
     if arguments.report {
-        for line in stage_table::lines(&drawings, &mapping, &report, &clock) {
+        for line in stage_table::lines(&layer, &mapping, &report, &clock) {
             verbosity.note(&line);
         }
         return Ok(());

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use inbetween::export::PendingFile;
-use inbetween::pipeline::{PipelineError, laid_out};
-use inbetween::scene::{NewPose, Scene, scene_text};
+use inbetween::scene::{NewPose, Scene, SceneBuildError, scene_text};
 use inbetween::weights::arrange;
 
 use super::{Failure, Verbosity};
@@ -148,8 +147,8 @@ fn write(copies: &[Copy], scene_file: &Path, poses: &mut [NewPose], verbosity: V
 }
 
 /// Places by how far the drawings are from one another.
-fn places(scene_file: &Path, poses: &[NewPose]) -> Result<Vec<[f64; 2]>, PipelineError> {
-    let scene = laid_out(Scene::parse(&scene_text(poses), scene_file)?)?;
+fn places(scene_file: &Path, poses: &[NewPose]) -> Result<Vec<[f64; 2]>, SceneBuildError> {
+    let scene = Scene::parse(&scene_text(poses), scene_file)?.with_automatic_places()?;
     Ok(scene.poses.iter().map(|pose| [pose.at[0], pose.at[1]]).collect())
 }
 

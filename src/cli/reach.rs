@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use anyhow::{Context as _, anyhow};
+use anyhow::anyhow;
 use inbetween::math::Point;
 use inbetween::pipeline::{ReachOptions, reach_landmarks};
 use inbetween::scene::Scene;
@@ -92,7 +92,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let targets: Vec<(String, Point)> = (arguments.handle.iter())
         .map(|handle| (handle.name.clone(), Point::from(handle.target)))
         .collect();
-    let found = reach_landmarks(&scene, &targets, &ReachOptions::default()).with_context(in_scene)?;
+    let found = reach_landmarks(&scene.spec()?, &targets, &ReachOptions::default());
+    let found = found.map_err(|error| scene.refusal(error))?;
     let named = targets.iter().zip(&found.reached);
     let mut text = serde_json::to_string(&ReachText {
         at: &found.at,

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context as _;
 use inbetween::export::png_bytes;
-use inbetween::pipeline::{laid_out, map_drawings, read_drawings, weight_provider};
+use inbetween::pipeline::map_layer;
 use inbetween::render::diagram::{self, Diagram, DiagramPose, Sections};
 use inbetween::scene::Scene;
+use inbetween::weights::WeightProvider as _;
 
 use super::layer;
 use super::output::Output;
@@ -33,12 +33,10 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
     let scene = layer::chosen(Scene::open(&arguments.scene)?, arguments.layer.as_deref())?;
     let output = Output::open(&arguments.output)?;
-    let file = scene.file.display().to_string();
-    let scene = laid_out(scene).context(file)?;
+    let scene = scene.with_automatic_places()?;
     let in_scene = || scene.file.display().to_string();
-    let provider = weight_provider(&scene, None).with_context(in_scene)?;
-    let drawings = read_drawings(&scene).with_context(in_scene)?;
-    let (mapping, report) = map_drawings(&scene, &drawings).with_context(in_scene)?;
+    let provider = scene.weights(None)?;
+    let (mapping, report) = map_layer(&scene.layer_spec(0)?).map_err(|error| scene.refusal(error))?;
     for note in &report.notes {
         verbosity.note(&format!("note: {note}"));
     }

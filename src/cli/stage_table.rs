@@ -2,8 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use inbetween::input::Drawing;
-use inbetween::pipeline::{MappingReport, Stage};
+use inbetween::pipeline::{LayerSpec, MappingReport, Stage};
 use inbetween::pose::Mapping;
 
 /// Landmarks named in a pose's line; the others are counted.
@@ -68,17 +67,12 @@ impl StageClock {
 }
 
 /// The table, one line an entry: stages with their times and numbers, then the match of every pose.
-pub(crate) fn lines(
-    drawings: &[Drawing],
-    mapping: &Mapping,
-    report: &MappingReport,
-    clock: &StageClock,
-) -> Vec<String> {
+pub(crate) fn lines(layer: &LayerSpec, mapping: &Mapping, report: &MappingReport, clock: &StageClock) -> Vec<String> {
     let rows: Vec<[String; 3]> = clock
         .times()
         .into_iter()
         .map(|(row, time)| {
-            let numbers = numbers_of(row, drawings, mapping, report);
+            let numbers = numbers_of(row, layer, mapping, report);
             [row.to_string(), format!("{:.1}", time.as_secs_f64() * 1e3), numbers]
         })
         .collect();
@@ -115,10 +109,11 @@ pub(crate) fn lines(
 }
 
 /// What a stage has to say.
-fn numbers_of(row: Row, drawings: &[Drawing], mapping: &Mapping, report: &MappingReport) -> String {
+fn numbers_of(row: Row, layer: &LayerSpec, mapping: &Mapping, report: &MappingReport) -> String {
     let largest = |values: &[f64]| 100.0 * values.iter().copied().fold(0.0, f64::max);
     match row {
         Row::Input => {
+            let drawings: Vec<_> = layer.drawn().map(|drawn| &drawn.drawing).collect();
             let rings = drawings.iter().flat_map(|drawing| drawing.outline.rings());
             let points: usize = rings.map(|ring| ring.len()).sum();
             let holes = mapping.rings.len().saturating_sub(1);

@@ -1,6 +1,6 @@
 //! Values as they are written on the command line.
 
-use inbetween::scene::Background;
+use inbetween::animation::Background;
 
 /// Numbers separated by commas: a place, or weights.
 #[derive(Debug, Clone, PartialEq)]

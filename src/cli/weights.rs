@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use anyhow::{Context as _, anyhow};
-use inbetween::pipeline::{laid_out, weight_provider};
+use anyhow::anyhow;
 use inbetween::scene::{Provider, Scene};
 use inbetween::texture::shared_texture_weights;
+use inbetween::weights::WeightProvider as _;
 use serde::Serialize;
 
 use super::Failure;
@@ -59,10 +59,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let provider = arguments.provider.as_deref().and_then(Provider::named);
     let output = Output::open(&arguments.output)?;
-    let file = scene.file.display().to_string();
-    let scene = laid_out(scene).context(file)?;
+    let scene = scene.with_automatic_places()?;
     let in_scene = || scene.file.display().to_string();
-    let provider = weight_provider(&scene, provider).with_context(in_scene)?;
+    let provider = scene.weights(provider)?;
     let mut text = String::new();
     let mut weights = Vec::new();
     for Numbers(place) in &arguments.at {

@@ -1,16 +1,17 @@
 //! Which point of every outline corresponds to which, and the drawings beneath.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::Arc;
 
 use inbetween::input::{Drawing, Picture};
 use inbetween::math::{Point, point};
 use inbetween::mesh::PointLocator;
 use inbetween::outline::{ArcLength, Outline, Ring};
-use inbetween::pipeline::{INTERIOR_DEPTH, Workbench, read_drawing_of};
+use inbetween::pipeline::INTERIOR_DEPTH;
 use inbetween::pose::LandmarkKind;
 use inbetween::render::Frame;
 use inbetween::render::diagram::Sections;
-use inbetween::scene::Scene;
+use inbetween::scene::{Scene, Workbench};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -160,9 +161,8 @@ fn unmatched(scene: &Scene, layer: usize) -> Value {
     let poses_of = scene.layers.get(layer).map_or(&all, |layer| &layer.poses);
     let pose_json = |(pose, index): (usize, &usize)| {
         let is_drawn = own.drawn_poses().contains(&pose);
-        let drawing = own
-            .drawing_of(pose)
-            .and_then(|(root, _)| read_drawing_of(own, root).ok());
+        let drawing = scene.read_drawing(layer, pose).ok();
+        let drawing = drawing.and_then(|drawn| drawn.as_used().ok());
         let (outline, holes) = drawing
             .as_ref()
             .map_or((Value::Null, json!([])), |d| outline_json(&d.outline));
@@ -210,13 +210,9 @@ pub(super) fn drawing(request: &Request, session: &Session) -> Result<Response, 
             .position(|&pose| theirs.poses[pose].name == *name)?;
         bench.drawings(layer).get(k)
     });
-    let read;
-    let drawing: &Drawing = match kept {
-        Some(drawing) => drawing,
-        None => {
-            read = read_drawing_of(own, root)?;
-            &read
-        }
+    let drawing: Arc<Drawing> = match kept {
+        Some(drawing) => Arc::clone(drawing),
+        None => scene.read_drawing(layer, root)?.as_used().map_err(Refusal::bad)?,
     };
     let frame = smaller(&drawing.picture, longest.clamp(1, LONGEST_SIDE));
     let png = inbetween::export::png_bytes(&frame).map_err(Refusal::failed)?;

@@ -8,8 +8,7 @@ mod written;
 use std::collections::BTreeMap;
 
 use inbetween::math::Point;
-use inbetween::pipeline::Workbench;
-use inbetween::scene::Scene;
+use inbetween::scene::{Scene, Workbench};
 use serde::Deserialize;
 use serde_json::Value;
 use toml_edit::DocumentMut;

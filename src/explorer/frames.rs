@@ -5,8 +5,8 @@ use std::sync::Arc;
 use inbetween::blend::Stretch;
 use inbetween::export::svg_text;
 use inbetween::math::{Point, predicate};
-use inbetween::pipeline::{Posed, Workbench, checked_weights};
-use inbetween::scene::Provider;
+use inbetween::pipeline::{Posed, checked_weights};
+use inbetween::scene::{Provider, Workbench};
 use inbetween::weights::WeightProvider;
 use serde_json::json;
 

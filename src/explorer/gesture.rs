@@ -8,7 +8,8 @@
 
 use std::path::Path;
 
-use inbetween::scene::{Animation, Scene};
+use inbetween::animation::Animation;
+use inbetween::scene::Scene;
 use serde::Deserialize;
 use serde_json::{Value, json};
 

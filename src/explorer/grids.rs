@@ -1,7 +1,8 @@
 //! What weights and shapes are like over the plane.
 
 use inbetween::mesh::geometry;
-use inbetween::pipeline::{LayerShape, Posed, Workbench};
+use inbetween::pipeline::{LayerShape, Posed};
+use inbetween::scene::Workbench;
 use rayon::prelude::*;
 
 use super::frames::{asked_provider, numbers};

@@ -3,8 +3,8 @@
 use std::sync::{Arc, OnceLock};
 
 use inbetween::blend::Stretch;
-use inbetween::pipeline::{Character, DrawingFiles, EditableWeights, PipelineError, Workbench, weight_provider};
-use inbetween::scene::{Provider, Scene};
+use inbetween::pipeline::{Character, EditableWeights};
+use inbetween::scene::{DrawingFiles, Provider, Scene, Workbench};
 use inbetween::texture::shared_texture_weights;
 use inbetween::weights::WeightProvider;
 
@@ -129,8 +129,9 @@ impl Shown {
         }
         let own = &self.providers[usize::from(wanted == Provider::Rbf)];
         let made = || {
-            let made = weight_provider(scene, Some(wanted)).map(Arc::from);
-            made.map_err(|error: PipelineError| Problem::from(&error))
+            let made = scene.weights(Some(wanted));
+            let made = made.map(|weights| -> Arc<dyn WeightProvider> { Arc::new(weights) });
+            made.map_err(|error| Problem::from(&error))
         };
         own.get_or_init(made).clone().map_err(Refusal::conflict)
     }

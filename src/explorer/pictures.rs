@@ -2,9 +2,9 @@
 
 use inbetween::export::texture_png;
 use inbetween::math::Point;
-use inbetween::pipeline::{LayerShape, Workbench};
+use inbetween::pipeline::{Facing, LayerShape};
 use inbetween::render::{PuppetTexture, Texture};
-use inbetween::scene::Facing;
+use inbetween::scene::Workbench;
 use serde_json::{Value, json};
 
 use super::http::Request;

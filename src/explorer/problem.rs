@@ -1,7 +1,7 @@
 //! What is wrong, in the artist's words, and where in the page that belongs.
 
 use inbetween::pipeline::PipelineError;
-use inbetween::scene::{SceneError, SceneProblem};
+use inbetween::scene::{SceneBuildError, SceneError, SceneProblem};
 use serde::Serialize;
 
 use super::http::Response;
@@ -68,48 +68,47 @@ impl From<&SceneError> for Problem {
 impl From<&PipelineError> for Problem {
     fn from(error: &PipelineError) -> Self {
         use PipelineError as E;
-        let of_landmark = |name: &String, pose: Option<&String>, line: Option<usize>| Self {
-            landmark: Some(name.clone()),
-            pose: pose.cloned(),
-            line,
-            ..Self::at(error, Where::Landmark)
+        let within = error.within_layer();
+        let place = match within {
+            E::Space { .. } | E::NoCommonLayer | E::Weights(_) => Where::Space,
+            E::Animation(_) => Where::Animation,
+            _ if within.landmark().is_some() => Where::Landmark,
+            _ if within.pose().is_some() => Where::Pose,
+            _ if error.layer().is_some() => Where::Layer,
+            _ => Where::Mapping,
         };
-        let of_pose = |name: &String| Self {
-            pose: Some(name.clone()),
-            ..Self::at(error, Where::Pose)
-        };
+        Self {
+            pose: error.pose().map(str::to_owned),
+            landmark: error.landmark().map(str::to_owned),
+            layer: error.layer().map(str::to_owned),
+            ..Self::at(error, place)
+        }
+    }
+}
+
+impl From<&SceneBuildError> for Problem {
+    fn from(error: &SceneBuildError) -> Self {
         match error {
-            E::Scene(error) => Self::from(error.as_ref()),
-            E::Layer { layer, source } => {
-                let within = Self::from(source.as_ref());
-                Self {
-                    message: error.to_string(),
-                    layer: Some(layer.clone()),
-                    place: within.place.or(Some(Where::Layer)),
-                    ..within
-                }
-            }
-            E::Drawing { pose, .. } | E::HoleCount { pose, .. } => of_pose(pose),
-            E::LandmarkOffOutline {
-                landmark, pose, line, ..
-            }
-            | E::LandmarkMissing { landmark, pose, line } => of_landmark(landmark, Some(pose), Some(*line)),
-            E::LandmarkNowhere { landmark, line } => of_landmark(landmark, None, Some(*line)),
-            E::LandmarkOutside { landmark, pose }
-            | E::LandmarkCrossesItself { landmark, pose }
-            | E::LandmarkClosed { landmark, pose }
-            | E::LandmarkSides { landmark, pose, .. } => of_landmark(&landmark.name, Some(pose), Some(landmark.line)),
-            E::LandmarksMeet { second, pose, .. } => of_landmark(&second.name, Some(pose), Some(second.line)),
-            E::LandmarkOrder { landmark, pose, .. } => of_landmark(landmark, Some(pose), None),
-            E::LandmarksCoincide { second, pose, .. } => of_landmark(second, Some(pose), None),
-            E::Deformation { pose, line, .. } => Self {
+            SceneBuildError::Scene(error) => Self::from(error),
+            SceneBuildError::Drawing {
+                line,
+                layer,
+                pose,
+                drawing,
+                source,
+                ..
+            } => Self {
                 line: Some(*line),
-                ..of_pose(pose)
+                layer: layer.clone(),
+                pose: Some(pose.clone()),
+                ..Self::at(format!("pose '{pose}' ({}): {source}", drawing.display()), Where::Pose)
             },
-            E::Stage { pose: Some(pose), .. } => of_pose(pose),
-            E::Stage { pose: None, message } if message.starts_with("pose space") => Self::at(error, Where::Space),
-            E::Weights(_) => Self::at(error, Where::Space),
-            _ => Self::at(error, Where::Mapping),
+            SceneBuildError::Pipeline { line, source, .. } => Self {
+                line: *line,
+                ..Self::from(source.as_ref())
+            },
+            SceneBuildError::Provider { .. } => Self::at(error, Where::Space),
+            other => Self::at(other, Where::File),
         }
     }
 }
@@ -153,6 +152,12 @@ impl Refusal {
 
 impl From<PipelineError> for Refusal {
     fn from(error: PipelineError) -> Self {
+        Self::conflict(Problem::from(&error))
+    }
+}
+
+impl From<SceneBuildError> for Refusal {
+    fn from(error: SceneBuildError) -> Self {
         Self::conflict(Problem::from(&error))
     }
 }

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use inbetween::pipeline::Workbench;
-use inbetween::scene::{Provider, Scene, WeightRange};
+use inbetween::scene::{Provider, Scene, Workbench};
+use inbetween::weights::Range;
 
 /// What changed besides places.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub(super) fn reweighted(bench: &Workbench, scene: &Scene) -> Option<(Workbench,
     let old = bench.scene();
     let is_quick = match scene.pose_space.provider {
         Provider::Rbf => true,
-        Provider::Biharmonic => scene.pose_space.range == WeightRange::Free && scene.pseudo_poses.is_empty(),
+        Provider::Biharmonic => scene.pose_space.range == Range::Free && scene.pseudo_poses.is_empty(),
     };
     let is_alike = is_quick
         && old.pose_space == scene.pose_space

@@ -1,11 +1,12 @@
 //! The scene, as the page needs it.
 
+use inbetween::animation::Background;
 use inbetween::blend::{FrameGuard, Reference, Stretch};
 use inbetween::math::Point;
-use inbetween::pipeline::Workbench;
-use inbetween::scene::{
-    ArtChoice, Background, ColourBlend, Facing, HandleMove, Layout, PoseSource, Provider, Radial, Scene, WeightRange,
-};
+use inbetween::pipeline::{ArtChoice, Facing, HandleMove};
+use inbetween::render::ColourBlend;
+use inbetween::scene::{Layout, PoseSource, Provider, Scene, Workbench};
+use inbetween::weights::{Radial, Range};
 use serde_json::{Map, Value, json};
 
 use super::pictures::reflected;
@@ -76,7 +77,7 @@ fn of(scene: &Scene, bench: Option<&Workbench>) -> Value {
             "provider": name_of(&Provider::NAMED, &settings.provider),
             "radial": match settings.radial { Radial::BSpline => "b-spline", Radial::ThinPlate => "thin-plate" },
             "epsilon": settings.epsilon,
-            "bounded": settings.range == WeightRange::Unit,
+            "bounded": settings.range == Range::Unit,
             "walls": settings.walls,
         },
         "blend": {
@@ -92,7 +93,7 @@ fn of(scene: &Scene, bench: Option<&Workbench>) -> Value {
             "blending": match scene.colour_blend { ColourBlend::Plain => "plain", ColourBlend::Linear => "linear" },
             "drawing": match scene.art { ArtChoice::Curves => "curves", ArtChoice::Pixels => "pixels" },
         },
-        "mesh": {"simplify": scene.mesh.simplify, "edge_length": scene.mesh.edge_length},
+        "mesh": {"simplify": scene.mesh.simplify.tolerance, "edge_length": scene.mesh.refine.edge_length},
         "layers": layers(scene),
         "landmarks": landmarks(scene, bench),
         "animation": animation(scene),
@@ -129,10 +130,10 @@ fn pose_json(scene: &Scene, bench: Option<&Workbench>, index: usize) -> Value {
             "drawn"
         }
         PoseSource::Deformed(copy) => {
-            deform_of = scene.poses[copy.of].name.clone().into();
+            deform_of = scene.poses[copy.copy.of].name.clone().into();
             let place = |place| used(bench, 0, &pose.name, place);
             let handle = |handle: &HandleMove| json!({"from": place(handle.from), "to": place(handle.to)});
-            handles.extend(copy.handles.iter().map(handle));
+            handles.extend(copy.copy.handles.iter().map(handle));
             "deformed"
         }
         PoseSource::Layered => "layered",

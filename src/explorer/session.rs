@@ -9,8 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use inbetween::pipeline::{DrawingFiles, Workbench};
-use inbetween::scene::{Layout, Scene};
+use inbetween::scene::{DrawingFiles, Layout, Scene, Workbench};
 use serde::Deserialize;
 use serde_json::Value;
 

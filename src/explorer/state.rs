@@ -3,8 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use inbetween::pipeline::DrawingFiles;
-use inbetween::scene::Scene;
+use inbetween::scene::{DrawingFiles, Scene};
 use serde::Serialize;
 use serde_json::{Value, json};
 

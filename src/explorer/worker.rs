@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, SystemTime};
 
-use inbetween::pipeline::Workbench;
-use inbetween::scene::Scene;
+use inbetween::scene::{Scene, Workbench};
 
 use super::problem::Problem;
 use super::session::Session;

@@ -3,61 +3,45 @@
 //! Every frame but the first is cut to what changed, and replaces it. A rate that does not fit the format's fractions
 //! is shown in whole milliseconds that add up.
 
-use std::path::PathBuf;
+use std::io::Write;
 
 use super::changes::Changes;
 use super::timing::Rate;
-use super::{ExportError, PendingFile, Repetition};
+use super::{Repetition, WriteError};
 use crate::render::Frame;
 
 /// Writes an APNG frame by frame. All frames have one size.
-pub struct ApngWriter {
-    writer: png::Writer<PendingFileRef>,
-    file: std::rc::Rc<std::cell::RefCell<PendingFile>>,
-    target: PathBuf,
+pub struct ApngWriter<W: Write> {
+    writer: png::Writer<W>,
     size: [usize; 2],
     rate: Rate,
     count: u64,
     changes: Changes,
 }
 
-impl std::fmt::Debug for ApngWriter {
+impl<W: Write> std::fmt::Debug for ApngWriter<W> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("ApngWriter")
-            .field("target", &self.target)
+            .field("size", &self.size)
+            .field("count", &self.count)
             .finish_non_exhaustive()
     }
 }
 
-/// The encoder keeps its writer to itself; the file is shared with it so that it can be renamed at the end.
-struct PendingFileRef(std::rc::Rc<std::cell::RefCell<PendingFile>>);
-
-impl std::io::Write for PendingFileRef {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.0.borrow_mut().write(bytes)
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.0.borrow_mut().flush()
-    }
-}
-
-impl ApngWriter {
-    /// An APNG of `count` frames of `size` (columns, rows) at `fps` frames a second.
+impl<W: Write> ApngWriter<W> {
+    /// An APNG of `count` frames of `size` (columns, rows) at `fps` frames a second, whose bytes go to `writer`; give a `&mut` of
+    /// what is wanted back.
     ///
     /// # Errors
-    /// [`ExportError`] if the file cannot be written.
+    /// [`WriteError`] if the bytes cannot be written or the format cannot hold the size.
     pub fn new(
-        file: PendingFile,
+        writer: W,
         size: [usize; 2],
         fps: f64,
         count: usize,
         repetition: Repetition,
-    ) -> Result<Self, ExportError> {
-        let target = file.target().to_owned();
-        let failed = |error: png::EncodingError| ExportError::cannot_write(&target, error);
-        let file = std::rc::Rc::new(std::cell::RefCell::new(file));
-        let mut encoder = png::Encoder::new(PendingFileRef(file.clone()), size[0] as u32, size[1] as u32);
+    ) -> Result<Self, WriteError> {
+        let mut encoder = png::Encoder::new(writer, size[0] as u32, size[1] as u32);
         encoder.set_color(png::ColorType::Rgba);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_compression(png::Compression::Balanced);
@@ -65,17 +49,15 @@ impl ApngWriter {
             Repetition::Once => 1,
             Repetition::Forever => 0,
         };
-        encoder.set_animated(count as u32, plays).map_err(failed)?;
+        encoder.set_animated(count as u32, plays)?;
         let rate = Rate::of(fps);
         let (numerator, denominator) = delay(rate, 0);
-        encoder.set_frame_delay(numerator, denominator).map_err(failed)?;
-        encoder.set_dispose_op(png::DisposeOp::None).map_err(failed)?;
-        encoder.set_blend_op(png::BlendOp::Source).map_err(failed)?;
-        let writer = encoder.write_header().map_err(failed)?;
+        encoder.set_frame_delay(numerator, denominator)?;
+        encoder.set_dispose_op(png::DisposeOp::None)?;
+        encoder.set_blend_op(png::BlendOp::Source)?;
+        let writer = encoder.write_header()?;
         Ok(Self {
             writer,
-            file,
-            target,
             size,
             rate,
             count: 0,
@@ -86,44 +68,29 @@ impl ApngWriter {
     /// Adds a frame.
     ///
     /// # Errors
-    /// [`ExportError`] if the file cannot be written, the frame has another size, or there are too many.
-    pub fn add(&mut self, frame: &Frame) -> Result<(), ExportError> {
+    /// [`WriteError`] if the bytes cannot be written, the frame has another size, or there are too many.
+    pub fn add(&mut self, frame: &Frame) -> Result<(), WriteError> {
         if [frame.width, frame.height] != self.size {
-            return Err(ExportError::Unsuitable {
-                path: self.target.clone(),
-                reason: "all frames of an APNG have one size".to_owned(),
-            });
+            return Err(WriteError::unsuitable("all frames of an APNG have one size"));
         }
         let change = self.changes.next(frame, 1);
         let (numerator, denominator) = delay(self.rate, self.count);
         self.count += 1;
         let buffer = change.part.straight();
         let writer = &mut self.writer;
-        let write = |writer: &mut png::Writer<PendingFileRef>| {
-            writer.reset_frame_position()?;
-            writer.set_frame_dimension(change.part.width as u32, change.part.height as u32)?;
-            writer.set_frame_position(change.left as u32, change.top as u32)?;
-            writer.set_frame_delay(numerator, denominator)?;
-            writer.write_image_data(&buffer)
-        };
-        write(writer).map_err(|error| ExportError::cannot_write(&self.target, error))
+        writer.reset_frame_position()?;
+        writer.set_frame_dimension(change.part.width as u32, change.part.height as u32)?;
+        writer.set_frame_position(change.left as u32, change.top as u32)?;
+        writer.set_frame_delay(numerator, denominator)?;
+        Ok(writer.write_image_data(&buffer)?)
     }
 
-    /// Ends the file and gives it its name.
+    /// Ends the file.
     ///
     /// # Errors
-    /// [`ExportError`] if the system refuses or frames are missing.
-    pub fn finish(self) -> Result<(), ExportError> {
-        self.writer
-            .finish()
-            .map_err(|error| ExportError::cannot_write(&self.target, error))?;
-        match std::rc::Rc::try_unwrap(self.file) {
-            Ok(file) => file.into_inner().commit(),
-            Err(_) => Err(ExportError::cannot_write(
-                &self.target,
-                "the encoder still holds the file",
-            )),
-        }
+    /// [`WriteError`] if the last bytes cannot be written, or frames are missing.
+    pub fn finish(self) -> Result<(), WriteError> {
+        Ok(self.writer.finish()?)
     }
 }
 
@@ -157,15 +124,12 @@ mod tests {
             })
             .chain([Frame::filled(8, 6, [0; 4])])
             .collect();
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("a.png");
-        let file = PendingFile::create(&path).expect("writable");
-        let mut writer = ApngWriter::new(file, [8, 6], 24.0, frames.len(), Repetition::Once).expect("an APNG");
+        let mut bytes = Vec::new();
+        let mut writer = ApngWriter::new(&mut bytes, [8, 6], 24.0, frames.len(), Repetition::Once).expect("an APNG");
         for frame in &frames {
             writer.add(frame).expect("added");
         }
         writer.finish().expect("written");
-        let bytes = std::fs::read(path).expect("there");
         let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(bytes)).expect("a PNG");
         let read = decoder
             .apng()

@@ -4,10 +4,10 @@
 //! in front of a colour only what changed is drawn over the last frame. Times are whole hundredths of a second that add
 //! up; colours are those of one [`Palette`], dithered.
 
-use std::path::Path;
+use std::io::Write;
 
 use super::timing::Rate;
-use super::{ExportError, Palette, PendingFile, Repetition, box_of};
+use super::{Palette, Repetition, WriteError, box_of};
 use crate::render::Frame;
 
 /// The shortest time a frame is shown, in hundredths of a second: players slow shorter ones down to ten.
@@ -23,9 +23,8 @@ pub enum Backdrop {
 }
 
 /// Writes a GIF frame by frame. All frames have one size and share one palette.
-pub struct GifWriter {
-    encoder: gif::Encoder<PendingFile>,
-    target: std::path::PathBuf,
+pub struct GifWriter<W: Write> {
+    encoder: gif::Encoder<W>,
     palette: Palette,
     backdrop: Backdrop,
     size: [u16; 2],
@@ -36,48 +35,42 @@ pub struct GifWriter {
     last: Option<Vec<u8>>,
 }
 
-impl std::fmt::Debug for GifWriter {
+impl<W: Write> std::fmt::Debug for GifWriter<W> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("GifWriter")
-            .field("target", &self.target)
+            .field("size", &self.size)
             .field("count", &self.count)
             .finish_non_exhaustive()
     }
 }
 
-impl GifWriter {
-    /// Frames a second that players still show at their pace; at a higher rate the animation takes longer.
-    pub const FASTEST: f64 = 100.0 / SHORTEST as f64;
+/// Frames a second that players of GIFs still show at their pace; at a higher rate the animation takes longer.
+pub const FASTEST_GIF: f64 = 100.0 / SHORTEST as f64;
 
-    /// A GIF of `size` (columns, rows) at `fps` frames a second.
+impl<W: Write> GifWriter<W> {
+    /// A GIF of `size` (columns, rows) at `fps` frames a second, whose bytes go to `writer`; give a `&mut` of what is wanted back.
     ///
     /// # Errors
-    /// [`ExportError`] if the file cannot be written or the format cannot hold the size.
+    /// [`WriteError`] if the bytes cannot be written or the format cannot hold the size.
     pub fn new(
-        file: PendingFile,
+        writer: W,
         size: [usize; 2],
         fps: f64,
         palette: Palette,
         backdrop: Backdrop,
         repetition: Repetition,
-    ) -> Result<Self, ExportError> {
-        let target = file.target().to_owned();
+    ) -> Result<Self, WriteError> {
         let [Ok(width), Ok(height)] = size.map(u16::try_from) else {
-            return Err(ExportError::Unsuitable {
-                path: target,
-                reason: "a GIF is at most 65535 pixels wide and high; choose a smaller size".to_owned(),
-            });
+            return Err(WriteError::unsuitable(
+                "a GIF is at most 65535 pixels wide and high; choose a smaller size",
+            ));
         };
-        let mut encoder = gif::Encoder::new(file, width, height, &palette.bytes())
-            .map_err(|error| ExportError::cannot_write(&target, error))?;
+        let mut encoder = gif::Encoder::new(writer, width, height, &palette.bytes())?;
         if repetition == Repetition::Forever {
-            encoder
-                .set_repeat(gif::Repeat::Infinite)
-                .map_err(|error| ExportError::cannot_write(&target, error))?;
+            encoder.set_repeat(gif::Repeat::Infinite)?;
         }
         Ok(Self {
             encoder,
-            target,
             palette,
             backdrop,
             size: [width, height],
@@ -90,14 +83,11 @@ impl GifWriter {
     /// Adds a frame.
     ///
     /// # Errors
-    /// [`ExportError`] if the file cannot be written or the frame has another size.
-    pub fn add(&mut self, frame: &Frame) -> Result<(), ExportError> {
+    /// [`WriteError`] if the bytes cannot be written or the frame has another size.
+    pub fn add(&mut self, frame: &Frame) -> Result<(), WriteError> {
         let [width, height] = self.size.map(usize::from);
         if [frame.width, frame.height] != [width, height] {
-            return Err(ExportError::Unsuitable {
-                path: self.target.clone(),
-                reason: "all frames of a GIF have one size".to_owned(),
-            });
+            return Err(WriteError::unsuitable("all frames of a GIF have one size"));
         }
         let mut indices = self.palette.indices(frame);
         let drawn = match &self.last {
@@ -136,29 +126,15 @@ impl GifWriter {
             ..gif::Frame::default()
         };
         self.count += 1;
-        self.encoder
-            .write_frame(&frame)
-            .map_err(|error| ExportError::cannot_write(&self.target, error))
+        Ok(self.encoder.write_frame(&frame)?)
     }
 
-    /// Ends the file and gives it its name.
+    /// Ends the file.
     ///
     /// # Errors
-    /// [`ExportError`] if the system refuses.
-    pub fn finish(self) -> Result<(), ExportError> {
-        let file = self
-            .encoder
-            .into_inner()
-            .map_err(|error| ExportError::cannot_write(&self.target, error))?;
-        file.commit()
-    }
-
-    /// Opens the file at `target`; a shorthand of [`PendingFile::create`].
-    ///
-    /// # Errors
-    /// [`ExportError`] if it cannot be written.
-    pub fn open(target: &Path) -> Result<PendingFile, ExportError> {
-        PendingFile::create(target)
+    /// [`WriteError`] if the last bytes cannot be written.
+    pub fn finish(self) -> Result<(), WriteError> {
+        Ok(self.encoder.into_inner()?.flush()?)
     }
 }
 
@@ -185,16 +161,14 @@ mod tests {
     }
 
     fn written(frames: &[Frame], backdrop: Backdrop) -> Vec<image::Frame> {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("a.gif");
-        let file = GifWriter::open(&path).expect("writable");
+        let mut bytes = Vec::new();
         let palette = Palette::for_frames(frames);
-        let mut writer = GifWriter::new(file, [8, 6], 24.0, palette, backdrop, Repetition::Forever).expect("a GIF");
+        let mut writer =
+            GifWriter::new(&mut bytes, [8, 6], 24.0, palette, backdrop, Repetition::Forever).expect("a GIF");
         for frame in frames {
             writer.add(frame).expect("added");
         }
         writer.finish().expect("written");
-        let bytes = std::fs::read(path).expect("there");
         let decoder = image::codecs::gif::GifDecoder::new(std::io::Cursor::new(bytes)).expect("a GIF");
         decoder.into_frames().collect_frames().expect("frames")
     }

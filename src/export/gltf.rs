@@ -186,7 +186,7 @@ impl File {
     }
 
     fn add_material(&mut self, layer: &str, texture: &PuppetTexture) -> Result<usize, String> {
-        let png = texture_png(texture)?;
+        let png = texture_png(texture).map_err(|error| error.to_string())?;
         let view = self.buffer.add_view(&png, None);
         let name = format!("{layer} {}", texture.name);
         self.images

@@ -1,9 +1,10 @@
 //! One picture as PNG.
 
 use std::fs::File;
-use std::io::{Read as _, Seek as _, SeekFrom};
+use std::io::{Read, Seek as _, SeekFrom, Write};
 use std::path::Path;
 
+use super::WriteError;
 use crate::render::Frame;
 
 /// The word before a [`Label`] in a PNG file.
@@ -52,7 +53,7 @@ impl Label {
         let read = || -> std::io::Result<bool> {
             let mut file = File::open(path)?;
             let mut start = Vec::new();
-            file.by_ref().take(SEARCHED).read_to_end(&mut start)?;
+            Read::by_ref(&mut file).take(SEARCHED).read_to_end(&mut start)?;
             let mut end = [0; END.len()];
             file.seek(SeekFrom::End(-(END.len() as i64)))?;
             file.read_exact(&mut end)?;
@@ -67,39 +68,58 @@ impl Label {
 /// The bytes of an 8-bit RGBA PNG file (sRGB colours, alpha not multiplied in).
 ///
 /// # Errors
-/// The encoder's message, for a picture without pixels.
-pub fn png_bytes(frame: &Frame) -> Result<Vec<u8>, String> {
+/// [`WriteError::Encoding`] for a picture without pixels.
+pub fn png_bytes(frame: &Frame) -> Result<Vec<u8>, WriteError> {
     encoded(frame, None)
+}
+
+/// Writes a frame as an 8-bit RGBA PNG file (sRGB colours, alpha not multiplied in).
+///
+/// # Errors
+/// [`WriteError`] for a picture without pixels, or if the bytes cannot be written.
+pub fn write_png(frame: &Frame, writer: impl Write) -> Result<(), WriteError> {
+    write_straight_png(writer, [frame.width, frame.height], &frame.straight(), None)
 }
 
 /// The same with a label inside.
 ///
 /// # Errors
 /// As [`png_bytes`].
-pub fn png_bytes_with(frame: &Frame, label: &Label) -> Result<Vec<u8>, String> {
+pub fn png_bytes_with(frame: &Frame, label: &Label) -> Result<Vec<u8>, WriteError> {
     encoded(frame, Some(label))
 }
 
-fn encoded(frame: &Frame, label: Option<&Label>) -> Result<Vec<u8>, String> {
+fn encoded(frame: &Frame, label: Option<&Label>) -> Result<Vec<u8>, WriteError> {
     straight_png_bytes([frame.width, frame.height], &frame.straight(), label)
 }
 
 /// The bytes of a PNG file from those of its pixels, colours not multiplied by alpha.
-pub(super) fn straight_png_bytes(size: [usize; 2], pixels: &[u8], label: Option<&Label>) -> Result<Vec<u8>, String> {
+pub(super) fn straight_png_bytes(
+    size: [usize; 2],
+    pixels: &[u8],
+    label: Option<&Label>,
+) -> Result<Vec<u8>, WriteError> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, size[0] as u32, size[1] as u32);
+    write_straight_png(&mut bytes, size, pixels, label)?;
+    Ok(bytes)
+}
+
+fn write_straight_png(
+    writer: impl Write,
+    size: [usize; 2],
+    pixels: &[u8],
+    label: Option<&Label>,
+) -> Result<(), WriteError> {
+    let mut encoder = png::Encoder::new(writer, size[0] as u32, size[1] as u32);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Balanced);
     if let Some(Label(text)) = label {
-        encoder
-            .add_text_chunk(KEYWORD.to_owned(), text.clone())
-            .map_err(|error| error.to_string())?;
+        encoder.add_text_chunk(KEYWORD.to_owned(), text.clone())?;
     }
-    let mut writer = encoder.write_header().map_err(|error| error.to_string())?;
-    writer.write_image_data(pixels).map_err(|error| error.to_string())?;
-    writer.finish().map_err(|error| error.to_string())?;
-    Ok(bytes)
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels)?;
+    Ok(writer.finish()?)
 }
 
 #[cfg(test)]

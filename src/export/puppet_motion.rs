@@ -1,5 +1,6 @@
 //! What formats of deformed meshes need of an animated [`Puppet`]: keys, hidden stretches, pictures as files.
 
+use super::WriteError;
 use super::keys::{Keys, place_keys};
 use super::png::straight_png_bytes;
 use crate::math::Point;
@@ -186,8 +187,8 @@ fn check_layer(layer: &PuppetLayer) -> Result<(), String> {
 /// The texture as a PNG file.
 ///
 /// # Errors
-/// The encoder's message, for a texture without pixels.
-pub fn texture_png(texture: &PuppetTexture) -> Result<Vec<u8>, String> {
+/// [`WriteError::Encoding`] for a texture without pixels.
+pub fn texture_png(texture: &PuppetTexture) -> Result<Vec<u8>, WriteError> {
     straight_png_bytes([texture.width, texture.height], texture.pixels.as_flattened(), None)
 }
 

@@ -81,9 +81,9 @@ impl Sequence {
     /// [`ExportError`] if the system refuses.
     pub fn write(&self, number: usize, frame: &Frame, label: &Label) -> Result<(), ExportError> {
         let path = self.path(number);
-        let bytes = png_bytes_with(frame, label).map_err(|reason| ExportError::Unsuitable {
+        let bytes = png_bytes_with(frame, label).map_err(|error| ExportError::Unsuitable {
             path: path.clone(),
-            reason,
+            reason: error.to_string(),
         })?;
         PendingFile::create_among_others(&path)?.fill(&bytes)
     }

@@ -140,7 +140,7 @@ pub fn spine_files(motion: &PuppetMotion<'_>, stem: &str) -> Result<SpineFiles, 
             "{file}\nsize: {width}, {height}\nfilter: Linear, Linear\n{}\nbounds: 0, 0, {width}, {height}\n\n",
             slot.name
         ));
-        pictures.push((file, texture_png(texture)?));
+        pictures.push((file, texture_png(texture).map_err(|error| error.to_string())?));
     }
     let skeleton = skeleton(motion, &layers, &slots, stem);
     let worst = layers.iter().map(|motion| motion.keys.worst).fold(0.0, f64::max);

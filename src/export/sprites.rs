@@ -104,7 +104,7 @@ impl SpriteSheet {
         }
         let table = self.table_of(size, &places);
         let failed = |file: &PendingFile, reason: String| ExportError::cannot_write(file.target(), reason);
-        let bytes = png_bytes(&sheet).map_err(|reason| failed(&self.image, reason))?;
+        let bytes = png_bytes(&sheet).map_err(|error| failed(&self.image, error.to_string()))?;
         let mut text = serde_json::to_vec_pretty(&table).map_err(|error| failed(&self.table, error.to_string()))?;
         text.push(b'\n');
         for (file, bytes) in [(&mut self.image, bytes), (&mut self.table, text)] {

@@ -4,12 +4,11 @@
 //! `ANMF` a frame, after Google's "WebP Container Specification") is written here. Every frame but the first is cut to
 //! what changed, and replaces it. Times are whole milliseconds that add up.
 
-use std::io::{Seek as _, SeekFrom, Write as _};
-use std::path::PathBuf;
+use std::io::{Seek, SeekFrom, Write};
 
 use super::changes::Changes;
 use super::timing::Rate;
-use super::{ExportError, PendingFile, Repetition};
+use super::{Repetition, WriteError};
 use crate::render::Frame;
 
 /// The widest and highest picture of the format's lossless kind.
@@ -31,9 +30,10 @@ const FLAGS_AT: u64 = 20;
 
 /// Writes a WebP frame by frame. All frames have one size.
 #[derive(Debug)]
-pub struct WebPWriter {
-    file: PendingFile,
-    target: PathBuf,
+pub struct WebPWriter<W: Write + Seek> {
+    writer: W,
+    /// Where the file begins in it.
+    start: u64,
     size: [usize; 2],
     rate: Rate,
     changes: Changes,
@@ -43,22 +43,20 @@ pub struct WebPWriter {
     has_alpha: bool,
 }
 
-impl WebPWriter {
-    /// A WebP of `size` (columns, rows) at `fps` frames a second.
+impl<W: Write + Seek> WebPWriter<W> {
+    /// A WebP of `size` (columns, rows) at `fps` frames a second, whose bytes go to `writer`; give a `&mut` of what is wanted back.
     ///
     /// # Errors
-    /// [`ExportError`] if the file cannot be written or the format cannot hold the size.
-    pub fn new(file: PendingFile, size: [usize; 2], fps: f64, repetition: Repetition) -> Result<Self, ExportError> {
-        let target = file.target().to_owned();
+    /// [`WriteError`] if the bytes cannot be written or the format cannot hold the size.
+    pub fn new(mut writer: W, size: [usize; 2], fps: f64, repetition: Repetition) -> Result<Self, WriteError> {
         if size.iter().any(|side| !(1..=LARGEST).contains(side)) {
-            return Err(ExportError::Unsuitable {
-                path: target,
-                reason: format!("a WebP is at most {LARGEST} pixels wide and high; choose a smaller size"),
-            });
+            return Err(WriteError::unsuitable(format!(
+                "a WebP is at most {LARGEST} pixels wide and high; choose a smaller size"
+            )));
         }
         let mut writer = Self {
-            file,
-            target,
+            start: writer.stream_position()?,
+            writer,
             size,
             rate: Rate::of(fps),
             changes: Changes::default(),
@@ -84,15 +82,15 @@ impl WebPWriter {
     /// Adds a frame.
     ///
     /// # Errors
-    /// [`ExportError`] if the file cannot be written or the frame has another size.
-    pub fn add(&mut self, frame: &Frame) -> Result<(), ExportError> {
+    /// [`WriteError`] if the bytes cannot be written or the frame has another size.
+    pub fn add(&mut self, frame: &Frame) -> Result<(), WriteError> {
         if [frame.width, frame.height] != self.size {
-            return Err(self.unsuitable("all frames of a WebP have one size"));
+            return Err(WriteError::unsuitable("all frames of a WebP have one size"));
         }
         self.has_alpha |= frame.pixels.iter().any(|pixel| pixel[3] < 255);
         // Places are stored halved.
         let change = self.changes.next(frame, 2);
-        let pixels = lossless(&change.part).map_err(|reason| self.unsuitable(&reason))?;
+        let pixels = lossless(&change.part)?;
         let shown = self.rate.ticks_of(self.count, TICKS).min(LONGEST);
         let mut data = Vec::with_capacity(FRAME_HEADER + pixels.len());
         for field in [
@@ -110,44 +108,34 @@ impl WebPWriter {
         self.write(&chunk(b"ANMF", &data))
     }
 
-    /// Ends the file and gives it its name.
+    /// Ends the file.
     ///
     /// # Errors
-    /// [`ExportError`] if the system refuses, or the file became larger than the format can say.
-    pub fn finish(mut self) -> Result<(), ExportError> {
+    /// [`WriteError`] if the last bytes cannot be written, or the file became larger than the format can say.
+    pub fn finish(mut self) -> Result<(), WriteError> {
         let Ok(length) = u32::try_from(self.length - 8) else {
-            return Err(self.unsuitable(
+            return Err(WriteError::unsuitable(
                 "a WebP is at most 4 GiB long; choose a smaller size, fewer frames, or a folder of PNG files",
             ));
         };
         let flags = HAS_ANIMATION | if self.has_alpha { HAS_ALPHA } else { 0 };
-        let patch = |file: &mut PendingFile| {
-            file.seek(SeekFrom::Start(4))?;
-            file.write_all(&length.to_le_bytes())?;
-            file.seek(SeekFrom::Start(FLAGS_AT))?;
-            file.write_all(&[flags])
-        };
-        patch(&mut self.file).map_err(|error| ExportError::cannot_write(&self.target, error))?;
-        self.file.commit()
+        let (writer, start) = (&mut self.writer, self.start);
+        writer.seek(SeekFrom::Start(start + 4))?;
+        writer.write_all(&length.to_le_bytes())?;
+        writer.seek(SeekFrom::Start(start + FLAGS_AT))?;
+        writer.write_all(&[flags])?;
+        writer.seek(SeekFrom::Start(start + self.length))?;
+        Ok(writer.flush()?)
     }
 
-    fn write(&mut self, bytes: &[u8]) -> Result<(), ExportError> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), WriteError> {
         self.length += bytes.len() as u64;
-        self.file
-            .write_all(bytes)
-            .map_err(|error| ExportError::cannot_write(&self.target, error))
-    }
-
-    fn unsuitable(&self, reason: &str) -> ExportError {
-        ExportError::Unsuitable {
-            path: self.target.clone(),
-            reason: reason.to_owned(),
-        }
+        Ok(self.writer.write_all(bytes)?)
     }
 }
 
 /// The `VP8L` chunk of a picture: what is inside a WebP file of that picture alone.
-fn lossless(frame: &Frame) -> Result<Vec<u8>, String> {
+fn lossless(frame: &Frame) -> Result<Vec<u8>, WriteError> {
     let mut bytes = Vec::new();
     image_webp::WebPEncoder::new(&mut bytes)
         .encode(
@@ -156,12 +144,12 @@ fn lossless(frame: &Frame) -> Result<Vec<u8>, String> {
             frame.height as u32,
             image_webp::ColorType::Rgba8,
         )
-        .map_err(|error| error.to_string())?;
+        .map_err(|error| WriteError::Encoding(Box::new(error)))?;
     let inside = bytes.split_off(12.min(bytes.len()));
     if inside.starts_with(b"VP8L") {
         Ok(inside)
     } else {
-        Err("the WebP encoder wrote no lossless picture".to_owned())
+        Err(WriteError::unsuitable("the WebP encoder wrote no lossless picture"))
     }
 }
 
@@ -185,19 +173,19 @@ fn three_bytes(number: usize) -> [u8; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Cursor;
+
     use image::AnimationDecoder as _;
 
     fn written(frames: &[Frame], fps: f64, repetition: Repetition) -> Vec<u8> {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("a.webp");
-        let file = PendingFile::create(&path).expect("writable");
+        let mut bytes = Cursor::new(Vec::new());
         let size = [frames[0].width, frames[0].height];
-        let mut writer = WebPWriter::new(file, size, fps, repetition).expect("a WebP");
+        let mut writer = WebPWriter::new(&mut bytes, size, fps, repetition).expect("a WebP");
         for frame in frames {
             writer.add(frame).expect("added");
         }
         writer.finish().expect("written");
-        std::fs::read(path).expect("there")
+        bytes.into_inner()
     }
 
     /// Boxes of half-clear colour that move over `back`; the last frame is repeated.
@@ -252,8 +240,7 @@ mod tests {
 
     #[test]
     fn what_the_format_cannot_hold_is_refused() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let file = PendingFile::create(&folder.path().join("a.webp")).expect("writable");
+        let file = Cursor::new(Vec::new());
         let error = WebPWriter::new(file, [20_000, 10], 24.0, Repetition::Once).expect_err("too wide");
         assert!(error.to_string().contains("16384"), "{error}");
     }

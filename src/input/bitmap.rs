@@ -16,7 +16,7 @@ use std::path::Path;
 use image::RgbaImage;
 
 use super::coverage::{Coverage, CoverageSource};
-use super::decode::decode;
+use super::decode::{decode, image_of_pixels};
 use super::iso_line::{Part, Parts};
 use super::{Drawing, InputError, InputNote, Picture};
 use crate::math::Point;
@@ -78,16 +78,35 @@ pub fn open_bitmap(path: &Path, options: &BitmapOptions) -> Result<Drawing, Inpu
 /// # Errors
 /// [`InputError`] if the bytes are no image, the image is too large, or nothing is drawn in it.
 pub fn read_bitmap(bytes: &[u8], options: &BitmapOptions) -> Result<Drawing, InputError> {
+    check_threshold(options)?;
+    outlined(&decode(bytes)?, options)
+}
+
+/// The drawing in pixels that are in memory, of `size` columns and rows: row by row, red, green, blue and alpha, colours not
+/// multiplied by alpha. Otherwise as [`read_bitmap`].
+///
+/// # Errors
+/// [`InputError`] if there are not four bytes a pixel, or as [`read_bitmap`].
+pub fn read_pixels(size: [usize; 2], rgba: &[u8], options: &BitmapOptions) -> Result<Drawing, InputError> {
+    check_threshold(options)?;
+    outlined(&image_of_pixels(size, rgba)?, options)
+}
+
+fn check_threshold(options: &BitmapOptions) -> Result<(), InputError> {
     let threshold = options.threshold;
     // Written so that NaN fails too.
     if !(0.01..=0.99).contains(&threshold) {
         return Err(InputError::BadThreshold { threshold });
     }
-    let image = decode(bytes)?;
+    Ok(())
+}
+
+fn outlined(image: &RgbaImage, options: &BitmapOptions) -> Result<Drawing, InputError> {
+    let threshold = options.threshold;
     let mut refusal = None;
     for step in THRESHOLD_STEPS {
         let moved = (threshold as f32 + step).clamp(0.005, 0.995);
-        match trace(&image, moved, options.holes) {
+        match trace(image, moved, options.holes) {
             Err(InputError::Outline(error)) => refusal = refusal.or(Some(InputError::Outline(error))),
             settled => return settled,
         }

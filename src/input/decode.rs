@@ -28,6 +28,30 @@ pub(super) fn decode(bytes: &[u8]) -> Result<RgbaImage, InputError> {
     reader.limits(limits);
     let mut decoder = reader.into_decoder().map_err(refused)?;
     let (width, height) = decoder.dimensions();
+    check_size(width, height)?;
+    let orientation = decoder.orientation().map_err(refused)?;
+    let mut image = DynamicImage::from_decoder(decoder).map_err(refused)?;
+    image.apply_orientation(orientation);
+    Ok(image.into_rgba8())
+}
+
+/// An image of `size` columns and rows from straight pixels in memory.
+pub(super) fn image_of_pixels(size: [usize; 2], rgba: &[u8]) -> Result<RgbaImage, InputError> {
+    let [width, height] = size.map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+    check_size(width, height)?;
+    let refusal = InputError::PixelBytes {
+        found: rgba.len(),
+        width,
+        height,
+    };
+    // The buffer may be longer than the image without this look.
+    if rgba.len() != size[0] * size[1] * 4 {
+        return Err(refusal);
+    }
+    RgbaImage::from_raw(width, height, rgba.to_vec()).ok_or(refusal)
+}
+
+fn check_size(width: u32, height: u32) -> Result<(), InputError> {
     if width == 0 || height == 0 {
         return Err(InputError::NoPixels { width, height });
     }
@@ -39,10 +63,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<RgbaImage, InputError> {
             largest_count: LARGEST_COUNT,
         });
     }
-    let orientation = decoder.orientation().map_err(refused)?;
-    let mut image = DynamicImage::from_decoder(decoder).map_err(refused)?;
-    image.apply_orientation(orientation);
-    Ok(image.into_rgba8())
+    Ok(())
 }
 
 fn refused(error: ImageError) -> InputError {

@@ -5,7 +5,7 @@ use crate::math::Point;
 use crate::outline::Outline;
 
 /// One drawing, ready for matching and rendering.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
     /// The shape, in source coordinates.
     pub outline: Outline,

@@ -8,6 +8,16 @@ use crate::outline::{OutlineError, RingError};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum InputError {
+    /// There are not four bytes a pixel.
+    #[error("{found} bytes for {width} x {height} pixels; give four bytes a pixel: red, green, blue, alpha")]
+    PixelBytes {
+        /// How many bytes there are.
+        found: usize,
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
     /// The file cannot be opened or read.
     #[error("cannot read {}: {source}; check the path and its permissions", path.display())]
     Unreadable {

@@ -1,6 +1,6 @@
 //! Drawings: a file's bytes in, an outline and its pixels out.
 //!
-//! [`read_bitmap`] and [`read_svg`] are pure; [`open_bitmap`] and [`open_svg`] are the ones that touch the disk. What was left out of a drawing (loose
+//! [`read_bitmap`], [`read_pixels`] and [`read_svg`] are pure; [`open_bitmap`] and [`open_svg`] are the ones that touch the disk. What was left out of a drawing (loose
 //! parts, specks, pin-holes) is told in its [`InputNote`]s; what cannot be used is an [`InputError`].
 
 mod art;
@@ -19,7 +19,7 @@ mod svg_numbers;
 mod svg_silhouette;
 
 pub use art::{Art, ArtElement};
-pub use bitmap::{BitmapOptions, HoleRule, open_bitmap, read_bitmap};
+pub use bitmap::{BitmapOptions, HoleRule, open_bitmap, read_bitmap, read_pixels};
 pub use drawing::{Drawing, InputNote};
 pub use error::InputError;
 pub use obj::{ObjError, ObjForm, ObjProblem, open_obj, read_obj};

@@ -1,20 +1,22 @@
 //! What a layer of a character is drawn with: textures of its drawings, or their curves.
 
+use std::sync::Arc;
+
 use super::PipelineError;
 use super::drawings::sharpen;
 use super::layer::{LayerShape, Part, PosedLayer};
+use super::spec::{ArtChoice, TextureSpec};
 use crate::input::Drawing;
 use crate::render::drawing::{CarriedDrawing, PoseArt, VectorNode, VectorPicture};
 use crate::render::puppet::{PuppetLayer, PuppetTexture};
-use crate::render::{Camera, ColourBlend, PaintOptions, Painter, PoseTexture, Texture};
-use crate::scene::{self, ArtChoice, Scene};
+use crate::render::{Camera, PaintOptions, Painter, PoseTexture, Texture};
 
 /// The drawings of a layer, ready to be drawn on its mesh.
 #[derive(Debug)]
 pub(super) struct LayerArt {
     style: Style,
     /// The drawings, for whoever draws meshes himself.
-    drawings: Vec<Drawing>,
+    drawings: Vec<Arc<Drawing>>,
     /// The pose of each drawing.
     drawn_on: Vec<usize>,
     /// The drawing of each pose.
@@ -32,19 +34,18 @@ impl LayerArt {
     pub(super) fn new(
         part: &Part<'_>,
         shape: &LayerShape,
-        mut drawings: Vec<Drawing>,
+        texture: &TextureSpec,
+        drawings: &[Arc<Drawing>],
         camera: Camera,
         samples: usize,
         notes: &mut Vec<String>,
     ) -> Result<Self, PipelineError> {
-        let drawn_on = part.scene.drawn_poses();
-        let drawing_of = part.scene.shown_drawings();
+        let drawn_on = part.layer.drawn_poses();
+        let drawing_of = part.layer.shown_drawings();
         let (mapping, silhouette) = (shape.mapping(), shape.silhouette.clone());
-        let blending = match part.scene.colour_blend {
-            scene::ColourBlend::Plain => ColourBlend::Plain,
-            scene::ColourBlend::Linear => ColourBlend::Linear,
-        };
-        let style = match curves(part.scene, &mut drawings, &drawn_on) {
+        let mut drawings = drawings.to_vec();
+        let blending = texture.blending;
+        let style = match curves(texture.art, &drawings, &drawn_on) {
             Some(curves) => {
                 let (carried, remarks) = CarriedDrawing::new(mapping, curves, drawing_of.clone(), silhouette, camera);
                 notes.extend(remarks.iter().map(|note| part.remark(note)));
@@ -52,8 +53,8 @@ impl LayerArt {
             }
             None => {
                 let scale = camera.scale() * samples as f64;
-                sharpen(part.scene, &mut drawings, scale)?;
-                let texture = |(drawing, &drawn_on): (&Drawing, &usize)| PoseTexture {
+                sharpen(part.layer, &mut drawings, scale).map_err(|error| part.refusal(error))?;
+                let texture = |(drawing, &drawn_on): (&Arc<Drawing>, &usize)| PoseTexture {
                     texture: Texture::new(&drawing.picture, &drawing.outline, scale),
                     drawn_on,
                 };
@@ -97,7 +98,7 @@ impl LayerArt {
     /// The layer as a textured mesh.
     pub(super) fn puppet(&self, shape: &LayerShape, camera: &Camera) -> PuppetLayer {
         let poses = &shape.mapping().poses;
-        let texture = |(drawing, &pose): (&Drawing, &usize)| {
+        let texture = |(drawing, &pose): (&Arc<Drawing>, &usize)| {
             let (name, positions) = (&poses.names()[pose], &poses.positions()[pose]);
             PuppetTexture::new(name, &drawing.picture, &drawing.outline, positions, camera.scale())
         };
@@ -107,13 +108,13 @@ impl LayerArt {
 }
 
 /// The drawings as curves, if all are to be and can be drawn so.
-fn curves(scene: &Scene, drawings: &mut [Drawing], drawn_on: &[usize]) -> Option<Vec<PoseArt>> {
-    if scene.art == ArtChoice::Pixels || drawings.iter().any(|drawing| drawing.art.is_none()) {
+fn curves(choice: ArtChoice, drawings: &[Arc<Drawing>], drawn_on: &[usize]) -> Option<Vec<PoseArt>> {
+    if choice == ArtChoice::Pixels {
         return None;
     }
-    let take = |(drawing, &drawn_on): (&mut Drawing, &usize)| {
-        let art = drawing.art.take()?;
+    let of = |(drawing, &drawn_on): (&Arc<Drawing>, &usize)| {
+        let art = drawing.art.clone()?;
         Some(PoseArt { art, drawn_on })
     };
-    drawings.iter_mut().zip(drawn_on).map(take).collect()
+    drawings.iter().zip(drawn_on).map(of).collect()
 }

@@ -1,44 +1,18 @@
-//! From what a scene says about blending to the blend's own options.
+//! From a layer's blend options, whose points are landmarks, to those of its mesh, whose points are vertices.
 
-use crate::blend::{self, BlendOptions};
+use super::spec::LayerSpec;
+use crate::blend::BlendOptions;
 use crate::pose::Mapping;
-use crate::scene::{Anchor, Scene};
 
-pub(super) fn blend_options(scene: &Scene, mapping: &Mapping) -> BlendOptions {
-    let vertex = |landmark| nearest_vertex(scene, mapping, landmark);
-    let settings = &scene.blend;
-    BlendOptions {
-        reference: settings.reference,
-        stretch: settings.stretch,
-        anchor: match &settings.anchor {
-            Anchor::Centroid => blend::Anchor::Centroid,
-            Anchor::Landmark(landmark) => blend::Anchor::Vertex(vertex(*landmark)),
-            Anchor::Soft(anchors) => {
-                let soft = anchors.iter().map(|anchor| blend::SoftAnchor {
-                    vertex: vertex(anchor.landmark),
-                    stiffness: anchor.stiffness,
-                });
-                blend::Anchor::Soft(soft.collect())
-            }
-        },
-        turns: scene.poses.iter().map(|pose| pose.turns).collect(),
-        regions: settings
-            .regions
-            .iter()
-            .map(|region| blend::Region {
-                vertex: vertex(region.landmark),
-                radius: region.radius,
-                stiffness: region.stiffness,
-                stretch_limit: region.stretch_limit,
-            })
-            .collect(),
-        guard: settings.guard,
-    }
+pub(super) fn blend_options(layer: &LayerSpec, mapping: &Mapping) -> BlendOptions {
+    layer
+        .blend
+        .with_points(|landmark| nearest_vertex(layer, mapping, landmark))
 }
 
 /// The vertex nearest to a landmark, over all poses that have it.
-fn nearest_vertex(scene: &Scene, mapping: &Mapping, landmark: usize) -> usize {
-    let places = &scene.landmarks[landmark].at;
+fn nearest_vertex(layer: &LayerSpec, mapping: &Mapping, landmark: usize) -> usize {
+    let places = &layer.landmarks[landmark].at;
     let distance = |vertex: usize| -> f64 {
         places
             .iter()

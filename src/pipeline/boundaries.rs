@@ -1,6 +1,9 @@
 //! The outlines' part of a mapping: matched, and simplified to polygons with corresponding vertices.
 
+use std::sync::Arc;
+
 use super::drawn::{RegistrationGuide, match_by_drawing};
+use super::spec::LayerSpec;
 use super::{PipelineError, Stage};
 use crate::appearance::Appearance;
 use crate::compatible::{Simplification, Simplified, SimplifiedAlone, SimplifyError, SimplifyOptions};
@@ -10,7 +13,6 @@ use crate::matching::{
 };
 use crate::math::Point;
 use crate::outline::{Outline, Ring};
-use crate::scene::Scene;
 
 /// How far corresponding vertices may drift apart where drawings say what corresponds, as a share of the deviation allowed.
 const DRIFT_SHARE: f64 = 0.5;
@@ -24,8 +26,9 @@ pub(super) struct Boundaries {
     /// Holes in one order.
     pub(super) outlines: Vec<Outline>,
     pub(super) matched: Matched,
-    /// What the drawings show, and where that is in every pose; `None` where nothing is drawn inside.
+    /// What the drawings show.
     appearances: Vec<Appearance>,
+    /// Where that is in every pose; `None` where nothing is drawn inside.
     pub(super) guide: Option<RegistrationGuide>,
     /// Pairs of points inside that guide the registration.
     inside: Vec<Vec<Option<Point>>>,
@@ -39,8 +42,8 @@ pub(super) struct Boundaries {
 impl Boundaries {
     /// What need not be made again is taken from `before`, which is of the same drawings.
     pub(super) fn new(
-        scene: &Scene,
-        drawings: &[Drawing],
+        layer: &LayerSpec,
+        drawings: &[Arc<Drawing>],
         on_outline: &[Landmark],
         inside: &[Vec<Option<Point>>],
         before: Option<&Self>,
@@ -48,8 +51,8 @@ impl Boundaries {
     ) -> Result<Self, PipelineError> {
         begins(Stage::Matching);
         let mut outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
-        let options = SimplifyOptions::default().with_tolerance(scene.mesh.simplify);
-        let refusal = |error| simplify_refusal(&scene.names(), error);
+        let options = layer.mesh.simplify.clone();
+        let refusal = |error| simplify_refusal(&layer.names(), error);
         let given = outlines.clone();
         let alone_options = options.clone();
         let alone = || alone(&given, on_outline, &alone_options, before);
@@ -60,13 +63,13 @@ impl Boundaries {
         let is_drawn = appearances.iter().any(Appearance::is_drawn);
         let (matched, alone, guide) = if is_drawn {
             let options = MatchOptions {
-                reference: scene.reference,
+                reference: layer.reference,
                 ..MatchOptions::default()
             };
             let (matched, alone) = rayon::join(
                 || {
                     match_by_drawing(
-                        &scene.names(),
+                        &layer.names(),
                         drawings,
                         &mut outlines,
                         &appearances,
@@ -80,14 +83,14 @@ impl Boundaries {
             let (matched, guide) = matched?;
             (matched, alone, Some(guide))
         } else {
-            let (matched, alone) = match_outlines(scene, &mut outlines, on_outline, alone)?;
+            let (matched, alone) = match_outlines(layer, &mut outlines, on_outline, alone)?;
             (matched, alone, None)
         };
         let alone = alone.map_err(refusal)?;
         // Where drawings say what corresponds, the mesh is held to it.
-        let options = match guide {
-            Some(_) => options.with_drift(DRIFT_SHARE * scene.mesh.simplify),
-            None => options,
+        let options = match (&guide, options.drift) {
+            (Some(_), None) => options.with_drift(DRIFT_SHARE * layer.mesh.simplify.tolerance),
+            _ => options,
         };
         begins(Stage::Simplification);
         let pinned: Vec<Vec<f64>> = on_outline
@@ -99,8 +102,8 @@ impl Boundaries {
         let simplified = simplification.polygons().map_err(refusal)?;
         Ok(Self {
             on_outline: on_outline.to_vec(),
-            reference: scene.reference,
-            tolerance: scene.mesh.simplify,
+            reference: layer.reference,
+            tolerance: layer.mesh.simplify.tolerance,
             outlines,
             matched,
             appearances,
@@ -112,12 +115,12 @@ impl Boundaries {
         })
     }
 
-    /// Whether they are those of this scene, too, whose drawings are the same.
-    pub(super) fn serve(&self, scene: &Scene, on_outline: &[Landmark], inside: &[Vec<Option<Point>>]) -> bool {
+    /// Whether they are those of this layer, too, whose drawings are the same.
+    pub(super) fn serve(&self, layer: &LayerSpec, on_outline: &[Landmark], inside: &[Vec<Option<Point>>]) -> bool {
         self.inside == inside
             && self.on_outline == on_outline
-            && self.reference == scene.reference
-            && self.tolerance == scene.mesh.simplify
+            && self.reference == layer.reference
+            && self.tolerance == layer.mesh.simplify.tolerance
     }
 }
 
@@ -149,15 +152,15 @@ pub(super) struct Matched {
 /// Matches the outer rings, puts the holes of all poses in one order, and matches them; `beside` is other work, done where
 /// matching leaves processors idle.
 fn match_outlines<T: Send>(
-    scene: &Scene,
+    layer: &LayerSpec,
     outlines: &mut [Outline],
     landmarks: &[Landmark],
     beside: impl FnOnce() -> T + Send,
 ) -> Result<(Matched, T), PipelineError> {
-    let names = scene.names();
+    let names = layer.names();
     let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
     let mut options = MatchOptions {
-        reference: scene.reference,
+        reference: layer.reference,
         ..MatchOptions::default()
     };
     let refusal = |error| match_refusal(&names, error);

@@ -4,24 +4,22 @@ mod runtime;
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::art::LayerArt;
-use super::figure::{self, Figure, Posed};
-use super::layer::{self, LayerShape, Part};
-use super::layout::placed;
-use super::{PipelineError, weight_provider, weighting};
-use crate::input::Drawing;
+use super::figure::{Figure, Posed};
+use super::layer::{self, LayerShape};
+use super::{Build, PipelineError, weighting};
+use crate::animation::{Animation, Background};
+use crate::pipeline::spec::CharacterSpec;
 use crate::render::drawing::{VectorFrame, VectorGroup, VectorNode};
 use crate::render::puppet::{Puppet, PuppetFrame};
 use crate::render::{Camera, Frame, PaintOptions, Painter};
-use crate::scene::{Animation, Background, Layout, Scene};
 use crate::weights::WeightProvider;
 
-/// A scene's character with everything that is computed once: mappings, factorised blends, weights, textures, camera.
+/// A character with everything that is computed once: mappings, factorised blends, weights, textures, camera.
 #[derive(Debug)]
 pub struct Character {
     names: Vec<String>,
+    places: Vec<Vec<f64>>,
     figure: Arc<Figure>,
     weights: Arc<dyn WeightProvider>,
     /// What each layer is drawn with.
@@ -30,81 +28,93 @@ pub struct Character {
     /// Along a pixel's side.
     samples: usize,
     notes: Vec<String>,
-    background: Background,
+    animation: Animation,
 }
 
 impl Character {
-    /// Reads, maps and prepares the character of `scene`, for frames of `size` (columns, rows).
+    /// Maps and prepares the character of `spec`, for frames of `size` (columns, rows).
     ///
-    /// The camera is fixed: it shows all poses and the whole animation. A scene without places is laid out first; whoever
-    /// wants to know its places, or its animation's, lays it out with [`laid_out`](super::laid_out) and gives that.
+    /// The camera is fixed: it shows all poses and the whole animation. Poses without places are laid out first, and an animation
+    /// through the poses then goes through these places; [`Self::animation`] is that one.
     ///
     /// # Errors
     /// [`PipelineError`] from any stage.
-    pub fn new(scene: &Scene, size: [usize; 2]) -> Result<Self, PipelineError> {
-        Self::supersampled(scene, size, 1)
+    pub fn new(spec: &CharacterSpec, animation: &Animation, size: [usize; 2]) -> Result<Self, PipelineError> {
+        Self::supersampled(spec, animation, size, 1)
     }
 
     /// As [`Self::new`], with `samples` x `samples` samples a pixel in its frames, from 1 to 4.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn supersampled(scene: &Scene, size: [usize; 2], samples: usize) -> Result<Self, PipelineError> {
-        let samples = samples.clamp(1, PaintOptions::MOST_SAMPLES);
-        // The cheap refusals first.
-        let mut weights = match scene.layout {
-            Layout::Given => Some(weight_provider(scene, None)?),
-            Layout::Automatic => None,
-        };
-        let parts = layer::parts(scene);
-        let mapped: Vec<Result<_, PipelineError>> = parts.par_iter().map(Part::mapped).collect();
-        let mut drawings = Vec::new();
-        let mut shapes = Vec::new();
-        let mut notes = Vec::new();
-        for (part, mapped) in parts.iter().zip(mapped) {
-            let (drawn, mapping, report) = mapped?;
-            notes.extend(report.notes);
-            shapes.push(part.shape(mapping, &mut notes)?);
-            drawings.push(drawn);
-        }
-        layer::tie(&parts, &mut shapes)?;
-        let scene = &placed(scene, shapes.iter().map(|shape| (shape.poses(), shape.mapping())))?;
-        let weights = match weights.take() {
-            Some(weights) => weights,
-            None => weight_provider(scene, None)?,
-        };
-        let figure = Arc::new(Figure::new(scene, shapes));
-        let camera = figure::camera(&scene.animation, size, &figure, weights.as_ref())?;
-        Self::drawn(scene, figure, weights.into(), camera, samples, drawings, notes)
+    pub fn supersampled(
+        spec: &CharacterSpec,
+        animation: &Animation,
+        size: [usize; 2],
+        samples: usize,
+    ) -> Result<Self, PipelineError> {
+        let build = Build::new(spec)?;
+        let animation = build.through_places(animation)?;
+        let camera = build.camera(&animation, size)?;
+        build.character(&animation, camera, samples)
     }
 
-    /// The figure with the art of its layers: `drawings` are those of each. The scene is laid out.
+    /// A build's figure with the art of its layers.
     pub(super) fn drawn(
-        scene: &Scene,
-        figure: Arc<Figure>,
+        build: &Build,
+        animation: &Animation,
         weights: Arc<dyn WeightProvider>,
         camera: Camera,
         samples: usize,
-        drawings: Vec<Vec<Drawing>>,
-        mut notes: Vec<String>,
     ) -> Result<Self, PipelineError> {
+        let samples = samples.clamp(1, PaintOptions::MOST_SAMPLES);
+        let (spec, figure) = (build.spec(), Arc::clone(build.figure()));
+        let mut notes = build.notes().to_vec();
         let mut art = Vec::new();
-        for ((part, shape), drawings) in layer::parts(scene).iter().zip(&figure.layers).zip(drawings) {
-            art.push(LayerArt::new(part, shape, drawings, camera, samples, &mut notes)?);
+        for (k, (part, shape)) in layer::parts(spec).iter().zip(&figure.layers).enumerate() {
+            let drawings = build.drawings(k);
+            art.push(LayerArt::new(
+                part,
+                shape,
+                &spec.texture,
+                drawings,
+                camera,
+                samples,
+                &mut notes,
+            )?);
         }
         Ok(Self {
-            names: scene.names(),
+            names: spec.space.poses.clone(),
+            places: build.places().to_vec(),
             figure,
             weights,
             art,
             camera,
             samples,
             notes,
-            background: scene.animation.background,
+            animation: animation.clone(),
         })
     }
 
-    /// Its layers, in the scene's order; a scene without layers has one.
+    /// The names of its poses, in the order of weights.
+    #[must_use]
+    pub fn poses(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The places of its poses, one a pose.
+    #[must_use]
+    pub fn places(&self) -> &[Vec<f64>] {
+        &self.places
+    }
+
+    /// The animation that its camera shows.
+    #[must_use]
+    pub fn animation(&self) -> &Animation {
+        &self.animation
+    }
+
+    /// Its layers, from back to front.
     #[must_use]
     pub fn layers(&self) -> &[LayerShape] {
         &self.figure.layers
@@ -130,7 +140,7 @@ impl Character {
         self.posed_of(&self.weights.weights_at(place).map_err(PipelineError::Weights)?)
     }
 
-    /// The character for given weights, one a pose of the scene.
+    /// The character for given weights, one a pose.
     ///
     /// # Errors
     /// [`PipelineError`] if they do not fit or do not sum to 1.
@@ -160,7 +170,7 @@ impl Character {
             }
         }
         let mut frame = frame.unwrap_or_else(|| self.clear_frame());
-        if let Background::Colour(colour) = self.background {
+        if let Background::Colour(colour) = self.animation.background {
             frame.put_before(colour);
         }
         frame
@@ -173,7 +183,7 @@ impl Character {
 
     /// Draws a frame as curves. Layers whose drawings are bitmaps are pictures in it.
     ///
-    /// In a scene with layers every layer is a group with its name, and what is in it has names that begin with that.
+    /// In a character with several layers every layer is a group with its name, and what is in it has names that begin with that.
     #[must_use]
     pub fn draw(&self, posed: &Posed) -> VectorFrame {
         let mut nodes = Vec::new();
@@ -196,7 +206,7 @@ impl Character {
         }
         VectorFrame {
             size: self.camera.size(),
-            background: match self.background {
+            background: match self.animation.background {
                 Background::Transparent => None,
                 Background::Colour(colour) => Some(colour),
             },

@@ -8,9 +8,12 @@
 //! Handles are given in the coordinates of the drawing as it is in its file, and are reflected with it where the pose that
 //! it belongs to says `mirror = true`.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::landmarks::as_used;
+use super::spec::{DeformedCopy, HandleMove, LayerSpec, PoseShape, PoseSpec};
 use super::{MappingReport, PipelineError};
 use crate::input::Drawing;
 use crate::matching::{Correspondence, PoseMatch, SalientPoint};
@@ -21,7 +24,6 @@ use crate::outline::{Outline, OutlineError};
 use crate::pose::{
     CarriedOutline, DragReport, HandleDeformation, HandleError, Mapping, Matching, MeshQuality, PoseSet,
 };
-use crate::scene::{DeformedCopy, HandleMove, PoseSource, Scene, ScenePose};
 
 /// How a deformed copy came about.
 #[derive(Debug, Clone)]
@@ -35,7 +37,7 @@ pub struct DeformedPose {
     pub drag: DragReport,
 }
 
-/// A pose of the whole scene while it is put together.
+/// A pose of the whole layer while it is put together.
 struct Pose {
     positions: Vec<Point>,
     outline: Outline,
@@ -46,18 +48,18 @@ struct Pose {
     matched: PoseMatch,
 }
 
-/// The mapping of all poses of `scene` from that of the drawn ones; `report` is completed.
+/// The mapping of all poses of `layer` from that of the drawn ones; `report` is completed.
 pub(super) fn with_copies(
-    scene: &Scene,
-    drawings: &[Drawing],
+    layer: &LayerSpec,
+    drawings: &[Arc<Drawing>],
     drawn: Mapping,
     report: &mut MappingReport,
 ) -> Result<Mapping, PipelineError> {
-    let order = scene.drawn_poses();
-    if order.len() == scene.poses.len() {
+    let order = layer.drawn_poses();
+    if order.len() == layer.poses.len() {
         return Ok(drawn);
     }
-    let names = scene.names();
+    let names = layer.names();
     let mut poses: Vec<Option<Pose>> = (0..names.len()).map(|_| None).collect();
     for (k, &pose) in order.iter().enumerate() {
         poses[pose] = Some(Pose {
@@ -68,15 +70,15 @@ pub(super) fn with_copies(
             matched: report.matching.poses[k].clone(),
         });
     }
-    // Copies of copies need a round each; a validated scene has no circle.
+    // Copies of copies need a round each; a valid layer has no circle.
     for _ in 0..names.len() {
-        let ready = |(pose, said): (usize, &ScenePose)| match &said.source {
-            PoseSource::Deformed(copy) if poses[pose].is_none() => Some((pose, copy.clone(), poses[copy.of].as_ref()?)),
+        let ready = |(pose, said): (usize, &PoseSpec)| match &said.shape {
+            PoseShape::Deformed(copy) if poses[pose].is_none() => Some((pose, copy.clone(), poses[copy.of].as_ref()?)),
             _ => None,
         };
-        let round: Vec<_> = scene.poses.iter().enumerate().filter_map(ready).collect();
+        let round: Vec<_> = layer.poses.iter().enumerate().filter_map(ready).collect();
         let made: Vec<_> = (round.into_par_iter())
-            .map(|(pose, copy, base)| (pose, copy.of, deformed(scene, drawings, &drawn, pose, &copy, base)))
+            .map(|(pose, copy, base)| (pose, copy.of, deformed(layer, drawings, &drawn, pose, &copy, base)))
             .collect();
         for (pose, of, made) in made {
             let (deformed, drag) = made?;
@@ -126,26 +128,25 @@ pub(super) fn with_copies(
 }
 
 fn deformed(
-    scene: &Scene,
-    drawings: &[Drawing],
+    layer: &LayerSpec,
+    drawings: &[Arc<Drawing>],
     drawn: &Mapping,
     pose: usize,
     copy: &DeformedCopy,
     base: &Pose,
 ) -> Result<(Pose, DragReport), PipelineError> {
-    let name = || scene.poses[pose].name.clone();
+    let name = || layer.poses[pose].name.clone();
     let refusal = |message: String| PipelineError::Deformation {
         pose: name(),
-        of: scene.poses[copy.of].name.clone(),
-        line: copy.line,
+        of: layer.poses[copy.of].name.clone(),
         message,
     };
-    let drawing = (scene.drawing_of(pose)).and_then(|(root, _)| scene.drawn_poses().iter().position(|&p| p == root));
+    let drawing = (layer.drawing_of(pose)).and_then(|(root, _)| layer.drawn_poses().iter().position(|&p| p == root));
     let drawing = drawing.ok_or_else(|| refusal("it has no drawing".to_owned()))?;
     let ends = |end: fn(&HandleMove) -> Point| -> Vec<Point> {
         copy.handles
             .iter()
-            .map(|handle| as_used(scene, drawings, drawing, end(handle)))
+            .map(|handle| as_used(layer, drawings, drawing, end(handle)))
             .collect()
     };
     let (mut from, mut to) = (ends(|handle| handle.from), ends(|handle| handle.to));

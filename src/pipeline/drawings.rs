@@ -1,105 +1,90 @@
-//! From a scene's files to drawings.
+//! The drawings of a layer as they are used: reflected where their poses are, and as fine as frames need.
 
-use std::path::Path;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use super::PipelineError;
-use crate::input::{BitmapOptions, Drawing, Extent, HoleRule, InputError, SvgOptions, open_bitmap, open_svg};
+use super::spec::{DrawnPose, Facing, LayerSpec, SvgSource};
+use crate::input::{Drawing, InputError, SvgOptions, read_svg};
 use crate::math::Point;
 use crate::math::point::bounding_box;
 use crate::outline::{Outline, OutlineError, Ring};
-use crate::scene::{self, Facing, Holes, Scene};
 
-/// Reads the drawings of a scene, in parallel: one a pose that has one of its own (deformed copies have none), in the scene's
-/// order. Mirrored poses are reflected, picture and outline.
-///
-/// # Errors
-/// [`PipelineError`] naming the first pose, in the scene's order, whose drawing cannot be used.
-pub fn read_drawings(scene: &Scene) -> Result<Vec<Drawing>, PipelineError> {
-    let read: Vec<Result<Drawing, PipelineError>> = scene
-        .drawn_poses()
-        .into_par_iter()
-        .map(|pose| read_drawing(scene, pose, None))
+impl DrawnPose {
+    /// The drawing as it is used: reflected if the pose is. One that is not is shared, not copied.
+    ///
+    /// # Errors
+    /// [`InputError`] if the reflected outline is none, for want of digits.
+    pub fn as_used(&self) -> Result<Arc<Drawing>, InputError> {
+        match self.facing {
+            Facing::AsDrawn => Ok(Arc::clone(&self.drawing)),
+            Facing::Mirrored => mirrored(self.drawing.as_ref().clone()).map(Arc::new),
+        }
+    }
+
+    /// The drawing as it is used, of a vector drawing whose pixels are made again, `pixels_per_unit` of them.
+    fn finer(&self, svg: &SvgSource, pixels_per_unit: f64) -> Result<Drawing, InputError> {
+        let options = SvgOptions {
+            pixels_per_unit: Some(pixels_per_unit),
+            ..svg.options.clone()
+        };
+        let drawing = read_svg(&svg.bytes, &options)?;
+        match self.facing {
+            Facing::AsDrawn => Ok(drawing),
+            Facing::Mirrored => mirrored(drawing),
+        }
+    }
+}
+
+/// The drawings of a layer as they are used, one a drawn pose, in order. Those whose pose `kept` knows are taken from there.
+pub(super) fn used_drawings(
+    layer: &LayerSpec,
+    kept: impl Fn(&DrawnPose) -> Option<Arc<Drawing>> + Sync,
+) -> Result<Vec<Arc<Drawing>>, PipelineError> {
+    let drawn: Vec<&DrawnPose> = layer.drawn().collect();
+    let used: Vec<Result<Arc<Drawing>, InputError>> = (drawn.into_par_iter())
+        .map(|pose| kept(pose).map_or_else(|| pose.as_used(), Ok))
         .collect();
-    read.into_iter().collect()
+    (used.into_iter().zip(layer.drawn_poses()))
+        .map(|(drawing, pose)| drawing.map_err(|source| refusal(layer, pose, source)))
+        .collect()
 }
 
 /// Draws vector drawings again whose pictures are coarser than frames at `frame_scale` pixels a unit.
-pub(super) fn sharpen(scene: &Scene, drawings: &mut [Drawing], frame_scale: f64) -> Result<(), PipelineError> {
-    let sharper: Vec<Result<(), PipelineError>> = drawings
+pub(super) fn sharpen(layer: &LayerSpec, drawings: &mut [Arc<Drawing>], frame_scale: f64) -> Result<(), PipelineError> {
+    let drawn: Vec<&DrawnPose> = layer.drawn().collect();
+    let sharper: Vec<Result<(), InputError>> = drawings
         .par_iter_mut()
-        .zip(scene.drawn_poses())
+        .zip(drawn)
         .map(|(drawing, pose)| {
-            let is_vector = scene.drawing_of(pose).is_some_and(|(_, source)| is_svg(&source.file));
-            if is_vector && drawing.picture.pixels_per_unit < frame_scale {
-                drawing.picture = read_drawing(scene, pose, Some(frame_scale))?.picture;
+            let Some(svg) = &pose.svg else { return Ok(()) };
+            if drawing.picture.pixels_per_unit < frame_scale {
+                let picture = pose.finer(svg, frame_scale)?.picture;
+                // The curves are drawn by themselves: here pixels are wanted.
+                *drawing = Arc::new(Drawing {
+                    picture,
+                    outline: drawing.outline.clone(),
+                    art: None,
+                    notes: Vec::new(),
+                });
             }
             Ok(())
         })
         .collect();
-    sharper.into_iter().collect()
+    (sharper.into_iter().zip(layer.drawn_poses()))
+        .try_for_each(|(done, pose)| done.map_err(|source| refusal(layer, pose, source)))
 }
 
-/// Reads the drawing of one pose that has one of its own, by its index.
-///
-/// # Errors
-/// As [`read_drawings`].
-pub fn read_drawing_of(scene: &Scene, pose: usize) -> Result<Drawing, PipelineError> {
-    read_drawing(scene, pose, None)
-}
-
-/// The drawing of pose `pose`; a vector drawing has `pixels_per_unit` in its picture.
-fn read_drawing(scene: &Scene, pose: usize, pixels_per_unit: Option<f64>) -> Result<Drawing, PipelineError> {
-    let path = scene.source_path(pose)?;
-    let name = &scene.poses[pose].name;
-    let Some((_, said)) = scene.drawing_of(pose) else {
-        return Err(PipelineError::stage(&scene.names(), Some(pose), "it has no drawing"));
-    };
-    let holes = match scene.input.holes {
-        Holes::Keep => HoleRule::Keep,
-        Holes::Fill => HoleRule::Fill,
-    };
-    let read = if is_svg(&path) {
-        open_svg(
-            &path,
-            &SvgOptions {
-                element: said.element.clone(),
-                pixels_per_unit,
-                holes,
-                extent: match said.extent {
-                    scene::Extent::Everything => Extent::Everything,
-                    scene::Extent::Element => Extent::Element,
-                },
-            },
-        )
-    } else {
-        open_bitmap(
-            &path,
-            &BitmapOptions {
-                threshold: scene.input.threshold,
-                holes,
-            },
-        )
-    };
-    read.and_then(|drawing| match said.facing {
-        Facing::AsDrawn => Ok(drawing),
-        Facing::Mirrored => mirrored(drawing),
-    })
-    .map_err(|source| PipelineError::Drawing {
-        pose: name.clone(),
-        file: said.file.clone(),
+fn refusal(layer: &LayerSpec, pose: usize, source: InputError) -> PipelineError {
+    PipelineError::Drawing {
+        pose: layer.poses[pose].name.clone(),
         source: Box::new(source),
-    })
-}
-
-fn is_svg(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|suffix| suffix.eq_ignore_ascii_case("svg"))
+    }
 }
 
 /// The drawing reflected left to right about the middle of its outline, so that it stays where it is.
-pub(super) fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
+fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
     let Drawing {
         outline,
         mut picture,

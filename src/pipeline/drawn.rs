@@ -1,5 +1,7 @@
 //! Outlines matched and interiors registered by what is drawn.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::PipelineError;
@@ -34,14 +36,14 @@ impl Guide for RegistrationGuide {
 }
 
 /// The appearances of some drawings.
-pub(super) fn appearances(drawings: &[Drawing]) -> Vec<Appearance> {
-    drawings.par_iter().map(Appearance::new).collect()
+pub(super) fn appearances(drawings: &[Arc<Drawing>]) -> Vec<Appearance> {
+    drawings.par_iter().map(|drawing| Appearance::new(drawing)).collect()
 }
 
 /// Matches all rings and registers the interiors. `inside` are pairs of points inside that correspond for certain: #points x #poses.
 pub(super) fn match_by_drawing(
     names: &[String],
-    drawings: &[Drawing],
+    drawings: &[Arc<Drawing>],
     outlines: &mut [Outline],
     appearances: &[Appearance],
     landmarks: &[Landmark],

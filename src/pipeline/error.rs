@@ -1,21 +1,23 @@
-//! Why a scene gives no pictures.
+//! Why a specification gives no character.
 
-use std::path::PathBuf;
-
-use super::LandmarkLabel;
+use super::spec::SpecError;
+use crate::animation::AnimationError;
 use crate::blend::BlendError;
 use crate::input::InputError;
-use crate::scene::SceneError;
 use crate::texture::TextureError;
 use crate::weights::WeightError;
 
-/// Why the pipeline stopped. Every message names the pose or file that it is about.
+/// Why the pipeline stopped. Every message names what it is about: layer, pose, landmark. Where that is written, and in which file,
+/// the front end knows that made the specification.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PipelineError {
-    /// The scene file is wrong.
+    /// The specification is no character.
     #[error(transparent)]
-    Scene(Box<SceneError>),
+    Spec(#[from] SpecError),
+    /// The animation is none in this pose space.
+    #[error(transparent)]
+    Animation(#[from] AnimationError),
     /// A layer cannot be used.
     #[error("layer '{layer}': {source}")]
     Layer {
@@ -24,19 +26,17 @@ pub enum PipelineError {
         /// What is wrong.
         source: Box<PipelineError>,
     },
-    /// A scene with layers was given where one layer is meant.
-    #[error("the scene has layers; this works on one of them, {}", layers.join(" or "))]
+    /// A character with layers was given where one layer is meant.
+    #[error("the character has layers; this works on one of them, {}", layers.join(" or "))]
     Layered {
         /// Their names.
         layers: Vec<String>,
     },
     /// A drawing cannot be used.
-    #[error("pose '{pose}' ({}): {source}", file.display())]
+    #[error("pose '{pose}': {source}")]
     Drawing {
         /// The pose's name.
         pose: String,
-        /// Its file.
-        file: PathBuf,
         /// What is wrong.
         source: Box<InputError>,
     },
@@ -57,14 +57,12 @@ pub enum PipelineError {
     },
     /// A landmark lies off the outline.
     #[error(
-        "landmark '{landmark}' (line {line}): on pose '{pose}' it lies {distance:.1} units from the outline, at most \
+        "landmark '{landmark}': on pose '{pose}' it lies {distance:.1} units from the outline, at most \
          {largest:.1} are allowed; move ({x:.1}, {y:.1}) onto the outline, or inside the shape in every pose"
     )]
     LandmarkOffOutline {
         /// Its name.
         landmark: String,
-        /// The line of the scene file.
-        line: usize,
         /// The pose's name.
         pose: String,
         /// How far it is off, in source units.
@@ -78,59 +76,57 @@ pub enum PipelineError {
     },
     /// A landmark inside the shape is not given in every pose, and there is no room where it should be.
     #[error(
-        "landmark '{landmark}' (line {line}) lies inside the shape, but pose '{pose}' has neither a place for it nor room where it should be; give it one"
+        "landmark '{landmark}' lies inside the shape, but pose '{pose}' has neither a place for it nor room where it should be; give it one"
     )]
     LandmarkMissing {
         /// Its name.
         landmark: String,
-        /// The line of the scene file.
-        line: usize,
         /// The pose's name.
         pose: String,
     },
     /// A landmark inside the drawing is not inside its polygon.
-    #[error("landmark {landmark} is not inside the shape of pose '{pose}', or leaves it; correct its place")]
+    #[error("landmark '{landmark}' is not inside the shape of pose '{pose}', or leaves it; correct its place")]
     LandmarkOutside {
         /// Which.
-        landmark: LandmarkLabel,
+        landmark: String,
         /// The pose's name.
         pose: String,
     },
     /// Two landmarks inside the shape touch or cross.
-    #[error("landmarks {first} and {second} meet inside pose '{pose}'; draw them apart")]
+    #[error("landmarks '{first}' and '{second}' meet inside pose '{pose}'; draw them apart")]
     LandmarksMeet {
         /// A landmark.
-        first: LandmarkLabel,
+        first: String,
         /// The other.
-        second: LandmarkLabel,
+        second: String,
         /// The pose's name.
         pose: String,
     },
     /// A line crosses itself.
-    #[error("landmark {landmark} crosses itself in pose '{pose}'; draw it without a loop")]
+    #[error("landmark '{landmark}' crosses itself in pose '{pose}'; draw it without a loop")]
     LandmarkCrossesItself {
         /// Which.
-        landmark: LandmarkLabel,
+        landmark: String,
         /// The pose's name.
         pose: String,
     },
     /// A line leads from a place of the outline back to the same place.
     #[error(
-        "landmark {landmark} begins and ends at the same place of the outline of pose '{pose}'; let its ends lie apart, or one of them inside"
+        "landmark '{landmark}' begins and ends at the same place of the outline of pose '{pose}'; let its ends lie apart, or one of them inside"
     )]
     LandmarkClosed {
         /// Which.
-        landmark: LandmarkLabel,
+        landmark: String,
         /// The name of a pose in which it is drawn.
         pose: String,
     },
     /// Something lies on different sides of a line.
     #[error(
-        "pose '{pose}' has a hole or landmark on the other side of landmark {landmark} than pose '{other}'; let the same things lie on each side, or end the line inside"
+        "pose '{pose}' has a hole or landmark on the other side of landmark '{landmark}' than pose '{other}'; let the same things lie on each side, or end the line inside"
     )]
     LandmarkSides {
         /// The line.
-        landmark: LandmarkLabel,
+        landmark: String,
         /// A pose's name.
         pose: String,
         /// The other pose's name.
@@ -160,7 +156,7 @@ pub enum PipelineError {
         pose: String,
     },
     /// A landmark is asked for that does not exist, or is a line.
-    #[error("there is no landmark point '{name}'; the scene has {known}")]
+    #[error("there is no landmark point '{name}'; the character has {known}")]
     UnknownLandmark {
         /// The name asked for.
         name: String,
@@ -168,22 +164,18 @@ pub enum PipelineError {
         known: String,
     },
     /// A landmark without a place.
-    #[error("landmark '{landmark}' (line {line}) lies on no pose; give it a place on at least one")]
+    #[error("landmark '{landmark}' lies on no pose; give it a place on at least one")]
     LandmarkNowhere {
         /// Its name.
         landmark: String,
-        /// The line of the scene file.
-        line: usize,
     },
     /// A copy cannot be deformed.
-    #[error("pose '{pose}' (line {line}), a deformed copy of '{of}': {message}")]
+    #[error("pose '{pose}', a deformed copy of '{of}': {message}")]
     Deformation {
         /// The copy's name.
         pose: String,
         /// The name of the pose that is deformed.
         of: String,
-        /// The line of the scene file with the handles.
-        line: usize,
         /// What is wrong and what to do.
         message: String,
     },
@@ -195,6 +187,17 @@ pub enum PipelineError {
         /// What is wrong.
         message: String,
     },
+    /// The places of the poses allow no weights.
+    #[error("pose space: {message}")]
+    Space {
+        /// What is wrong, with the names of the poses.
+        message: String,
+        /// The same with their numbers.
+        source: WeightError,
+    },
+    /// Poses without places have no layer in common.
+    #[error("pose space: no layer is in all poses, so the poses cannot be compared; give every pose its place")]
+    NoCommonLayer,
     /// The weights cannot be computed.
     #[error("pose space: {0}")]
     Weights(WeightError),
@@ -209,13 +212,63 @@ pub enum PipelineError {
     Texture(#[from] TextureError),
 }
 
-impl From<SceneError> for PipelineError {
-    fn from(error: SceneError) -> Self {
-        Self::Scene(Box::new(error))
-    }
-}
-
 impl PipelineError {
+    /// The layer that it is about, where one is named.
+    #[must_use]
+    pub fn layer(&self) -> Option<&str> {
+        match self {
+            Self::Layer { layer, .. } => Some(layer),
+            _ => None,
+        }
+    }
+
+    /// The refusal itself, without the layer that it is about.
+    #[must_use]
+    pub fn within_layer(&self) -> &Self {
+        match self {
+            Self::Layer { source, .. } => source.within_layer(),
+            own => own,
+        }
+    }
+
+    /// The landmark that it is about, where one is named; the end of a line as the line's name with `(start)` or `(end)`.
+    #[must_use]
+    pub fn landmark(&self) -> Option<&str> {
+        match self.within_layer() {
+            Self::LandmarkOffOutline { landmark, .. }
+            | Self::LandmarkMissing { landmark, .. }
+            | Self::LandmarkOutside { landmark, .. }
+            | Self::LandmarkCrossesItself { landmark, .. }
+            | Self::LandmarkClosed { landmark, .. }
+            | Self::LandmarkSides { landmark, .. }
+            | Self::LandmarkOrder { landmark, .. }
+            | Self::LandmarkNowhere { landmark } => Some(landmark),
+            Self::LandmarksMeet { second, .. } | Self::LandmarksCoincide { second, .. } => Some(second),
+            _ => None,
+        }
+    }
+
+    /// The pose that it is about, where one is named.
+    #[must_use]
+    pub fn pose(&self) -> Option<&str> {
+        match self.within_layer() {
+            Self::Drawing { pose, .. }
+            | Self::HoleCount { pose, .. }
+            | Self::LandmarkOffOutline { pose, .. }
+            | Self::LandmarkMissing { pose, .. }
+            | Self::LandmarkOutside { pose, .. }
+            | Self::LandmarksMeet { pose, .. }
+            | Self::LandmarkCrossesItself { pose, .. }
+            | Self::LandmarkClosed { pose, .. }
+            | Self::LandmarkSides { pose, .. }
+            | Self::LandmarkOrder { pose, .. }
+            | Self::LandmarksCoincide { pose, .. }
+            | Self::Deformation { pose, .. } => Some(pose),
+            Self::Stage { pose, .. } => pose.as_deref(),
+            _ => None,
+        }
+    }
+
     /// A stage's refusal about the pose of an index.
     pub(super) fn stage(names: &[String], pose: Option<usize>, message: impl std::fmt::Display) -> Self {
         Self::Stage {

@@ -2,9 +2,10 @@
 
 use super::PipelineError;
 use super::layer::{LayerShape, PosedLayer};
+use super::spec::CharacterSpec;
+use crate::animation::Animation;
 use crate::math::Point;
 use crate::render::Camera;
-use crate::scene::{Animation, Scene};
 use crate::texture::shared_texture_weights;
 use crate::weights::WeightProvider;
 
@@ -15,9 +16,9 @@ const CAMERA_PLACES: usize = 48;
 #[derive(Debug)]
 pub(super) struct Figure {
     pub(super) layers: Vec<LayerShape>,
-    /// Per pose of the scene, the layers from back to front.
+    /// Per pose of the space, the layers from back to front.
     draw_orders: Vec<Vec<usize>>,
-    /// Per pose of the scene, the one whose drawing it shows.
+    /// Per pose of the space, the one whose drawing it shows.
     originals: Vec<usize>,
     texture_sharpness: f64,
 }
@@ -25,7 +26,7 @@ pub(super) struct Figure {
 /// A character in one pose: the shapes of a frame, before it is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posed {
-    /// One a layer of the scene; a scene without layers has one.
+    /// One a layer.
     pub layers: Vec<PosedLayer>,
     /// The layers from back to front.
     pub order: Vec<usize>,
@@ -40,17 +41,22 @@ impl Posed {
 }
 
 impl Figure {
-    /// The shapes of a scene's layers, one a layer.
-    pub(super) fn new(scene: &Scene, layers: Vec<LayerShape>) -> Self {
+    /// The shapes of a character's layers, one a layer.
+    pub(super) fn new(spec: &CharacterSpec, layers: Vec<LayerShape>) -> Self {
         Self {
-            draw_orders: draw_orders(scene, layers.len()),
+            draw_orders: spec.draw_order_of_poses(),
             layers,
-            originals: scene.originals(),
-            texture_sharpness: scene.texture_sharpness,
+            originals: spec.originals(),
+            texture_sharpness: spec.texture.sharpness,
         }
     }
 
-    /// Per pose of the scene, the layers from back to front.
+    /// How sharply textures follow the nearest pose.
+    pub(super) fn texture_sharpness(&self) -> f64 {
+        self.texture_sharpness
+    }
+
+    /// Per pose of the space, the layers from back to front.
     pub(super) fn draw_orders(&self) -> &[Vec<usize>] {
         &self.draw_orders
     }
@@ -67,7 +73,7 @@ impl Figure {
         let mut layers: Vec<PosedLayer> = (self.layers.iter())
             .map(|shape| shape.posed(weights, &shown, sharpness))
             .collect::<Result<_, _>>()?;
-        // What a layer hangs on is put in its place first; a validated scene has no circle.
+        // What a layer hangs on is put in its place first; a valid specification has no circle.
         let mut is_placed: Vec<bool> = self.layers.iter().map(|shape| shape.hangs_on().is_none()).collect();
         for _ in 0..self.layers.len() {
             for (k, shape) in self.layers.iter().enumerate() {
@@ -91,13 +97,6 @@ impl Figure {
 /// The pose whose drawing is seen most; of equal ones the first.
 fn strongest(shown: &[f64]) -> usize {
     (0..shown.len()).fold(0, |best, pose| if shown[pose] > shown[best] { pose } else { best })
-}
-
-fn draw_orders(scene: &Scene, layer_count: usize) -> Vec<Vec<usize>> {
-    if scene.layers.is_empty() {
-        return vec![(0..layer_count).collect(); scene.poses.len()];
-    }
-    scene.poses.iter().map(|pose| pose.draw_order.clone()).collect()
 }
 
 /// A camera that shows all poses and the whole animation.

@@ -1,8 +1,10 @@
-//! The scene's landmarks, sorted: on the outlines, points inside, lines inside; and where they go in the poses that
+//! A layer's landmarks, sorted: on the outlines, points inside, lines inside; and where they go in the poses that
 //! lack them.
 //!
 //! An end of a line that lies at the outline in every pose is an outline landmark, too: it guides the matching, and the
 //! line is joined to the outline's vertex there.
+
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
@@ -11,13 +13,13 @@ use super::drawings::{mirror_axis, reflected};
 use super::inside::Obstacles;
 use super::landmark_path;
 use super::sides::Sides;
+use super::spec::{Facing, LayerSpec};
 use crate::compatible::{CompatibleMesh, FeaturePath, Features, PathEnd};
 use crate::input::Drawing;
 use crate::matching::Landmark;
 use crate::math::{Point, point};
 use crate::outline::{ArcLength, Outline, parameter_gap};
 use crate::pose::{LandmarkKind, PlacedLandmark};
-use crate::scene::{Facing, Scene};
 
 /// How far a landmark may lie from the outline it is snapped to, as a fraction of the pose's diagonal: a few times the
 /// width of an ink line.
@@ -34,7 +36,7 @@ const SAME_PLACE: f64 = 2e-3;
 /// thousand. The mesh has vertices at both, and the edge between would be as short as what the artist's decimals leave.
 const CORNER_REACH: f64 = 2.5e-4;
 
-/// All landmarks of a scene. Places are those of the drawings as they are used: reflected where the pose is.
+/// All landmarks of a layer. Places are those of the drawings as they are used: reflected where the pose is.
 pub(super) struct Landmarks {
     /// On the outer rings, ends of lines included.
     pub(super) on_outline: Vec<Landmark>,
@@ -45,41 +47,38 @@ pub(super) struct Landmarks {
 /// A point inside.
 pub(super) struct InteriorPoint {
     pub(super) name: String,
-    pub(super) line: usize,
     pub(super) at: Vec<Option<Point>>,
 }
 
 /// A line inside.
 pub(super) struct InteriorPath {
     pub(super) name: String,
-    pub(super) line: usize,
     pub(super) at: Vec<Option<Vec<Point>>>,
     /// Which outline landmark its start and its end are.
     pub(super) ends: [Option<usize>; 2],
 }
 
-/// Sorts the scene's landmarks.
+/// Sorts the layer's landmarks.
 ///
 /// # Errors
 /// [`PipelineError`] if a landmark has no place, or is neither inside nor at the outline.
-pub(super) fn sorted(scene: &Scene, drawings: &[Drawing]) -> Result<Landmarks, PipelineError> {
+pub(super) fn sorted(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Landmarks, PipelineError> {
     let measured: Vec<(ArcLength, f64)> = (drawings.iter())
         .map(|drawing| {
             let outer = drawing.outline.outer();
             (ArcLength::new(outer), point::diagonal(outer.points()))
         })
         .collect();
-    let look = |pose: usize, place: Point| Found::new(scene, drawings, &measured, pose, place);
-    let nowhere = |landmark: &String, line: usize| PipelineError::LandmarkNowhere {
+    let look = |pose: usize, place: Point| Found::new(layer, drawings, &measured, pose, place);
+    let nowhere = |landmark: &String| PipelineError::LandmarkNowhere {
         landmark: landmark.clone(),
-        line,
     };
     let mut sorted = Landmarks {
         on_outline: Vec::new(),
         points: Vec::new(),
         paths: Vec::new(),
     };
-    let everywhere: Vec<Vec<Option<Found>>> = (scene.landmarks.par_iter())
+    let everywhere: Vec<Vec<Option<Found>>> = (layer.landmarks.par_iter())
         .map(|landmark| {
             let places = landmark.at.iter().enumerate();
             places
@@ -87,23 +86,23 @@ pub(super) fn sorted(scene: &Scene, drawings: &[Drawing]) -> Result<Landmarks, P
                 .collect()
         })
         .collect();
-    for (landmark, found) in scene.landmarks.iter().zip(everywhere) {
-        let (name, line) = (landmark.name.clone(), landmark.line);
+    for (landmark, found) in layer.landmarks.iter().zip(everywhere) {
+        let name = landmark.name.clone();
         if found.iter().all(Option::is_none) {
-            return Err(nowhere(&name, line));
+            return Err(nowhere(&name));
         }
         if found.iter().flatten().all(Found::is_deep) {
             let at = found.iter().map(|found| found.as_ref().map(|f| f.place)).collect();
-            sorted.points.push(InteriorPoint { name, line, at });
+            sorted.points.push(InteriorPoint { name, at });
         } else {
-            let at = snapped(scene, &name, line, &found)?;
+            let at = snapped(layer, &name, &found)?;
             sorted.on_outline.push(Landmark { name, at });
         }
     }
-    for path in &scene.paths {
-        let (name, line) = (path.name.clone(), path.line);
+    for path in &layer.paths {
+        let name = path.name.clone();
         if path.at.iter().all(Option::is_none) {
-            return Err(nowhere(&name, line));
+            return Err(nowhere(&name));
         }
         let mut ends = [None; 2];
         for (end, word) in ["start", "end"].into_iter().enumerate() {
@@ -120,11 +119,11 @@ pub(super) fn sorted(scene: &Scene, drawings: &[Drawing]) -> Result<Landmarks, P
                 continue;
             }
             let name = format!("{name} ({word})");
-            let at = snapped(scene, &name, line, &found)?;
+            let at = snapped(layer, &name, &found)?;
             ends[end] = Some(sorted.on_outline_at(Landmark { name, at }));
         }
         let place = |pose: usize, points: &Vec<Point>| -> Vec<Point> {
-            points.iter().map(|&p| as_used(scene, drawings, pose, p)).collect()
+            points.iter().map(|&p| as_used(layer, drawings, pose, p)).collect()
         };
         let at = path
             .at
@@ -132,7 +131,7 @@ pub(super) fn sorted(scene: &Scene, drawings: &[Drawing]) -> Result<Landmarks, P
             .enumerate()
             .map(|(pose, points)| points.as_ref().map(|points| place(pose, points)));
         let at = at.collect();
-        sorted.paths.push(InteriorPath { name, line, at, ends });
+        sorted.paths.push(InteriorPath { name, at, ends });
     }
     Ok(sorted)
 }
@@ -188,8 +187,8 @@ impl Landmarks {
     /// #poses). Notes say what was placed.
     pub(super) fn features(
         &self,
-        scene: &Scene,
-        drawings: &[Drawing],
+        layer: &LayerSpec,
+        drawings: &[Arc<Drawing>],
         polygons: &[Outline],
         anchors: &[Vec<Point>],
         tolerance: f64,
@@ -198,10 +197,9 @@ impl Landmarks {
         let mut notes = Vec::new();
         let mut obstacles: Vec<Obstacles> = polygons.iter().map(Obstacles::new).collect();
         let deviations: Vec<f64> = polygons.iter().map(|polygon| tolerance * polygon.diagonal()).collect();
-        let lacking = |pose: usize, landmark: &str, line: usize| PipelineError::LandmarkMissing {
+        let lacking = |pose: usize, landmark: &str| PipelineError::LandmarkMissing {
             landmark: landmark.to_owned(),
-            line,
-            pose: scene.poses[pose].name.clone(),
+            pose: layer.poses[pose].name.clone(),
         };
         let mut sides = Sides::default();
         // Those from outline to outline first: whatever else is placed has to be on the right side of them.
@@ -227,7 +225,7 @@ impl Landmarks {
                 let all: Result<Vec<Point>, PipelineError> = (0..polygons.len())
                     .map(|pose| {
                         let place = row[pose].or_else(|| sides.predicted(polygons, row, pose));
-                        place.ok_or_else(|| lacking(pose, &path.name, path.line))
+                        place.ok_or_else(|| lacking(pose, &path.name))
                     })
                     .collect();
                 points.push(all?);
@@ -247,7 +245,7 @@ impl Landmarks {
             for (pose, _) in path.at.iter().enumerate().filter(|(_, points)| points.is_none()) {
                 notes.push(format!(
                     "landmark '{}' has no line in pose '{}': it follows the outline there; give it one if that is wrong",
-                    path.name, scene.poses[pose].name
+                    path.name, layer.poses[pose].name
                 ));
             }
             paths[number] = Some(FeaturePath { ends, points });
@@ -272,12 +270,12 @@ impl Landmarks {
                 let place = sides
                     .predicted(polygons, &landmark.at, pose)
                     .and_then(|place| obstacles[pose].nearest_free(&polygons[pose], place, is_allowed))
-                    .ok_or_else(|| lacking(pose, &landmark.name, landmark.line))?;
+                    .ok_or_else(|| lacking(pose, &landmark.name))?;
                 obstacles[pose].add_point(place);
-                let as_written = as_used(scene, drawings, pose, place);
+                let as_written = as_used(layer, drawings, pose, place);
                 notes.push(format!(
                     "landmark '{}' has no place in pose '{}': it was put at ({:.1}, {:.1}); give it one if that is wrong",
-                    landmark.name, scene.poses[pose].name, as_written.x, as_written.y
+                    landmark.name, layer.poses[pose].name, as_written.x, as_written.y
                 ));
                 places.push(place);
             }
@@ -313,9 +311,9 @@ fn nearest_vertex(polygons: &[Outline], places: &[Point]) -> usize {
 }
 
 /// A place of the source in the drawing as it is used. Its own inverse. `pose` counts the drawn poses.
-pub(super) fn as_used(scene: &Scene, drawings: &[Drawing], pose: usize, place: Point) -> Point {
-    let drawn = scene.drawn_poses();
-    match drawn.get(pose).and_then(|&pose| scene.drawing_of(pose)) {
+pub(super) fn as_used(layer: &LayerSpec, drawings: &[Arc<Drawing>], pose: usize, place: Point) -> Point {
+    let drawn = layer.drawn_poses();
+    match drawn.get(pose).and_then(|&pose| layer.drawing_of(pose)) {
         Some((_, source)) if source.facing == Facing::Mirrored => {
             reflected(place, mirror_axis(&drawings[pose].outline))
         }
@@ -324,18 +322,12 @@ pub(super) fn as_used(scene: &Scene, drawings: &[Drawing], pose: usize, place: P
 }
 
 /// The parameters of an outline landmark.
-fn snapped(
-    scene: &Scene,
-    landmark: &str,
-    line: usize,
-    found: &[Option<Found>],
-) -> Result<Vec<Option<f64>>, PipelineError> {
+fn snapped(layer: &LayerSpec, landmark: &str, found: &[Option<Found>]) -> Result<Vec<Option<f64>>, PipelineError> {
     for (pose, found) in found.iter().enumerate() {
         if let Some(found) = found.as_ref().filter(|f| f.distance > LANDMARK_REACH * f.size) {
             return Err(PipelineError::LandmarkOffOutline {
                 landmark: landmark.to_owned(),
-                line,
-                pose: scene.poses[pose].name.clone(),
+                pose: layer.poses[pose].name.clone(),
                 distance: found.distance,
                 largest: LANDMARK_REACH * found.size,
                 x: found.place.x,
@@ -359,8 +351,14 @@ struct Found {
 }
 
 impl Found {
-    fn new(scene: &Scene, drawings: &[Drawing], measured: &[(ArcLength, f64)], pose: usize, place: Point) -> Self {
-        let place = as_used(scene, drawings, pose, place);
+    fn new(
+        layer: &LayerSpec,
+        drawings: &[Arc<Drawing>],
+        measured: &[(ArcLength, f64)],
+        pose: usize,
+        place: Point,
+    ) -> Self {
+        let place = as_used(layer, drawings, pose, place);
         let (curve, size) = &measured[pose];
         let (nearest, distance) = curve.nearest(place);
         // Of the vertices, the nearer end of the edge that it lies on.

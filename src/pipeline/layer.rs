@@ -1,71 +1,40 @@
 //! One layer of a character: a shape of its own, and where it hangs.
 //!
-//! A layer is mapped and blended as if it were a scene, with the weights of the poses that have it ([`restricted_weights`]). One that is
+//! A layer is mapped and blended as if it were alone, with the weights of the poses that have it ([`restricted_weights`]). One that is
 //! anchored is then moved as a whole, so that its point comes to lie on the other layer's, each where its own mesh carries it.
 //! Poses that lack a layer fade it out, by what their drawings count in the frame.
 
 use super::blending::blend_options;
-use super::{MappingReport, PipelineError, ShapePoint, map_drawings, read_drawings};
+use super::spec::{CharacterSpec, LandmarkSpec, LayerSpec};
+use super::{PipelineError, ShapePoint};
 use crate::blend::{BlendOptions, BlendReport, RigidBlend};
-use crate::input::Drawing;
 use crate::math::{Point, restricted_weights};
 use crate::mesh::PointLocator;
 use crate::pose::Mapping;
 use crate::render::Silhouette;
-use crate::scene::{LayerAnchor, Scene, SceneLayer};
 use crate::texture::{TextureError, shared_texture_weights};
 
-/// A layer of a scene, or the whole of a scene without layers.
+/// A layer of a specification, with what it has of the others.
 pub(super) struct Part<'a> {
-    pub(super) name: String,
-    /// The poses of the whole scene that have it.
+    pub(super) layer: &'a LayerSpec,
+    /// The poses of the space that have it.
     pub(super) poses: Vec<usize>,
-    pub(super) scene: &'a Scene,
-    anchor: Option<&'a LayerAnchor>,
-    /// Its name in remarks; a scene without layers needs none.
+    /// Its name in remarks; the only layer of a character needs none.
     named: Option<&'a str>,
 }
 
-/// The layers of a scene, back to front; the scene itself if it has none.
-pub(super) fn parts<'a>(scene: &'a Scene) -> Vec<Part<'a>> {
-    if scene.layers.is_empty() {
-        return vec![Part {
-            name: scene.short_name(),
-            poses: (0..scene.poses.len()).collect(),
-            scene,
-            anchor: None,
-            named: None,
-        }];
-    }
-    let part = |layer: &'a SceneLayer| {
-        let SceneLayer {
-            name,
-            poses,
-            scene,
-            anchor,
-        } = layer;
-        Part {
-            name: name.clone(),
-            poses: poses.clone(),
-            scene,
-            anchor: anchor.as_ref(),
-            named: Some(name),
-        }
+/// The layers of a valid specification, back to front.
+pub(super) fn parts(spec: &CharacterSpec) -> Vec<Part<'_>> {
+    let is_one_of_several = spec.layers.len() > 1;
+    let part = |layer| Part {
+        layer,
+        poses: spec.poses_of(layer),
+        named: is_one_of_several.then_some(layer.name.as_str()),
     };
-    scene.layers.iter().map(part).collect()
+    spec.layers.iter().map(part).collect()
 }
 
 impl Part<'_> {
-    /// Reads and maps the layer's drawings.
-    pub(super) fn mapped(&self) -> Result<(Vec<Drawing>, Mapping, MappingReport), PipelineError> {
-        let drawings = read_drawings(self.scene).map_err(|error| self.refusal(error))?;
-        let (mapping, mut report) = map_drawings(self.scene, &drawings).map_err(|error| self.refusal(error))?;
-        for note in &mut report.notes {
-            *note = self.remark(note);
-        }
-        Ok((drawings, mapping, report))
-    }
-
     pub(super) fn remark(&self, note: &str) -> String {
         match self.named {
             Some(name) => format!("layer '{name}': {note}"),
@@ -85,7 +54,7 @@ impl Part<'_> {
 
     /// The layer's shape, not yet hung on another one.
     pub(super) fn shape(&self, mapping: Mapping, notes: &mut Vec<String>) -> Result<LayerShape, PipelineError> {
-        let options = blend_options(self.scene, &mapping);
+        let options = blend_options(self.layer, &mapping);
         let (blend, silhouette) = rayon::join(
             || RigidBlend::new(&mapping.poses, &options),
             || Silhouette::new(&mapping),
@@ -93,9 +62,9 @@ impl Part<'_> {
         let blend = blend.map_err(|error| self.refusal(error.into()))?;
         self.note_turns(&blend, notes);
         Ok(LayerShape {
-            name: self.name.clone(),
+            name: self.layer.name.clone(),
             poses: self.poses.clone(),
-            originals: self.scene.originals(),
+            originals: self.layer.originals(),
             silhouette,
             mapping,
             options,
@@ -114,7 +83,7 @@ impl Part<'_> {
             tie: None,
             ..before.clone()
         };
-        let options = blend_options(self.scene, &shape.mapping);
+        let options = blend_options(self.layer, &shape.mapping);
         if options != shape.options {
             shape.blend =
                 RigidBlend::new(&shape.mapping.poses, &options).map_err(|error| self.refusal(error.into()))?;
@@ -134,12 +103,15 @@ impl Part<'_> {
     }
 }
 
-/// Hangs the layers on one another where the scene says so; `shapes` has one a part.
+/// Hangs the layers on one another where the specification says so; `shapes` has one a part.
 pub(super) fn tie(parts: &[Part<'_>], shapes: &mut [LayerShape]) -> Result<(), PipelineError> {
     for (k, part) in parts.iter().enumerate() {
-        let Some(anchor) = part.anchor else { continue };
+        let Some(attachment) = part.layer.attachment else {
+            continue;
+        };
         let own = &shapes[k];
-        let other = &shapes[anchor.to];
+        let other = &shapes[attachment.to];
+        let landmark = &part.layer.landmarks[attachment.landmark];
         let among: Option<Vec<usize>> = own
             .poses
             .iter()
@@ -147,13 +119,13 @@ pub(super) fn tie(parts: &[Part<'_>], shapes: &mut [LayerShape]) -> Result<(), P
             .collect();
         let tie = among.and_then(|others| {
             Some(Tie {
-                to: anchor.to,
-                own: shape_point(part.scene, anchor, own, &(0..own.poses.len()).collect::<Vec<_>>())?,
-                other: shape_point(part.scene, anchor, other, &others)?,
+                to: attachment.to,
+                own: shape_point(part.layer, landmark, own, &(0..own.poses.len()).collect::<Vec<_>>())?,
+                other: shape_point(part.layer, landmark, other, &others)?,
             })
         });
         let refusal = || {
-            let problem = format!("it cannot be anchored at landmark '{}'", anchor.landmark);
+            let problem = format!("it cannot be anchored at landmark '{}'", landmark.name);
             part.refusal(PipelineError::stage(&[], None, problem))
         };
         shapes[k].tie = Some(tie.ok_or_else(refusal)?);
@@ -161,15 +133,15 @@ pub(super) fn tie(parts: &[Part<'_>], shapes: &mut [LayerShape]) -> Result<(), P
     Ok(())
 }
 
-/// The anchor as a point of `shape`, for each pose of the anchored layer; `poses` are these poses in `shape`. On deformed
+/// The landmark as a point of `shape`, for each pose of the attached layer; `poses` are these poses in `shape`. On deformed
 /// copies the mesh carries it from their original.
-fn shape_point(scene: &Scene, anchor: &LayerAnchor, shape: &LayerShape, poses: &[usize]) -> Option<ShapePoint> {
+fn shape_point(layer: &LayerSpec, landmark: &LandmarkSpec, shape: &LayerShape, poses: &[usize]) -> Option<ShapePoint> {
     let triangles = shape.mapping.poses.topology().triangles();
     let positions = shape.mapping.poses.positions();
     let mut anchors = Vec::new();
     for pose in 0..poses.len() {
-        let (original, _) = scene.drawing_of(pose)?;
-        let place = anchor.at[original]?;
+        let (original, _) = layer.drawing_of(pose)?;
+        let place = landmark.at[original]?;
         anchors.push(PointLocator::new(triangles, &positions[poses[original]]).bind(place)?);
     }
     Some(ShapePoint::from_anchors(anchors))
@@ -213,13 +185,13 @@ pub struct PosedLayer {
 }
 
 impl LayerShape {
-    /// The layer's name; of a scene without layers, the scene's.
+    /// The layer's name.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The poses of the scene that have the layer.
+    /// The poses of the space that have the layer.
     #[must_use]
     pub fn poses(&self) -> &[usize] {
         &self.poses
@@ -237,7 +209,7 @@ impl LayerShape {
         &self.blend
     }
 
-    /// The weights of its own poses where the scene's count with `weights`, which sum to 1.
+    /// The weights of its own poses where the space's count with `weights`, which sum to 1.
     #[must_use]
     pub fn own_weights(&self, weights: &[f64]) -> Vec<f64> {
         let is_present: Vec<bool> = (0..weights.len()).map(|pose| self.poses.contains(&pose)).collect();
@@ -264,7 +236,7 @@ impl LayerShape {
         self.tie.as_ref().map(|tie| tie.to)
     }
 
-    /// The layer where the scene's poses count with `weights` and their drawings with `shown`, not yet hung on another one.
+    /// The layer where the space's poses count with `weights` and their drawings with `shown`, not yet hung on another one.
     pub(super) fn posed(&self, weights: &[f64], shown: &[f64], sharpness: f64) -> Result<PosedLayer, PipelineError> {
         let own = self.own_weights(weights);
         let mut positions = Vec::new();

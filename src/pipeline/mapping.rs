@@ -3,18 +3,18 @@
 use std::sync::Arc;
 
 use super::boundaries::Boundaries;
+use super::drawings::used_drawings;
 use super::landmarks::{self, Landmarks};
-use super::triangulation::{self, Labels, LandmarkLabel};
+use super::spec::LayerSpec;
+use super::triangulation::{self, Labels};
 use super::{MappingReport, PipelineError, Stage, deformed};
 use crate::compatible::{
-    CompatibleMesh, Effort, Guide, RefineOptions, Simplification, Simplified, TriangulateReport, refine_guided,
-    triangulate_features,
+    CompatibleMesh, Effort, Guide, Simplification, Simplified, TriangulateReport, refine_guided, triangulate_features,
 };
 use crate::input::Drawing;
 use crate::math::Point;
 use crate::outline::{ArcLength, Outline};
 use crate::pose::{Mapping, Matching, MeshQuality, PoseSet};
-use crate::scene::Scene;
 
 /// Lines inside are simplified to the mesh's tolerance; where they then touch the outline or one another, to these shares
 /// of it.
@@ -24,79 +24,68 @@ const FINER_LINES: [f64; 4] = [1.0, 0.25, 0.0625, 0.0];
 /// this share of the first one's: good triangles are worth more than few points.
 const VARIED_ANGLES: f64 = 0.97;
 
-/// Maps the drawings of a scene onto one another: `drawings` has one a drawn pose, as
-/// [`read_drawings`](super::read_drawings) gives them. Deformed copies are added afterwards.
+/// Maps the drawings of a layer onto one another. Deformed copies are added afterwards.
 ///
 /// # Errors
-/// [`PipelineError`] if holes or landmarks do not fit, or a stage refuses; or if the scene has layers, of which each is a scene
-/// to be mapped by itself.
-pub fn map_drawings(scene: &Scene, drawings: &[Drawing]) -> Result<(Mapping, MappingReport), PipelineError> {
-    map_drawings_observed(scene, drawings, &mut |_| ())
+/// [`PipelineError`] if the layer is not valid, holes or landmarks do not fit, or a stage refuses.
+pub fn map_layer(layer: &LayerSpec) -> Result<(Mapping, MappingReport), PipelineError> {
+    map_layer_observed(layer, &mut |_| ())
 }
 
-/// As [`map_drawings`]; `begins` is told every stage as it begins, in the order of [`Stage`], on the thread that works on it. The
+/// As [`map_layer`]; `begins` is told every stage as it begins, in the order of [`Stage`], on the thread that works on it. The
 /// library reads no clock: whoever wants to know how long a stage takes looks at one there.
 ///
 /// # Errors
-/// As [`map_drawings`].
-pub fn map_drawings_observed(
-    scene: &Scene,
-    drawings: &[Drawing],
+/// As [`map_layer`].
+pub fn map_layer_observed(
+    layer: &LayerSpec,
     begins: &mut (dyn FnMut(Stage) + Send),
 ) -> Result<(Mapping, MappingReport), PipelineError> {
-    if !scene.layers.is_empty() {
-        return Err(PipelineError::Layered {
-            layers: scene.layers.iter().map(|layer| format!("'{}'", layer.name)).collect(),
-        });
-    }
-    let drawn = scene.only_drawn();
-    if drawn.poses.is_empty() || drawn.poses.len() != drawings.len() {
-        let problem = format!("{} drawings for {} drawn poses", drawings.len(), drawn.poses.len());
-        return Err(PipelineError::stage(&[], None, problem));
-    }
+    layer.check()?;
     // The stages hand thousands of small tasks to the thread pool; from outside it, each would put this thread to sleep.
     rayon::scope(|_| {
-        let (mapping, mut report, _) = map_drawn(&drawn, drawings, None, begins)?;
-        let mapping = deformed::with_copies(scene, drawings, mapping, &mut report)?;
+        let drawings = used_drawings(layer, |_| None)?;
+        let (mapping, mut report, _) = map_drawn(&layer.only_drawn(), &drawings, None, begins)?;
+        let mapping = deformed::with_copies(layer, &drawings, mapping, &mut report)?;
         Ok((mapping, report))
     })
 }
 
-/// As [`map_drawings`] for the same drawings as `before`, which the outlines' part is taken from if nothing that it is made of has
+/// The mapping of a valid layer from its drawings as they are used; for the same drawings as `before`, which the outlines' part is taken from if nothing that it is made of has
 /// changed; and that part, for the next time.
 pub(super) fn map_drawings_again(
-    scene: &Scene,
-    drawings: &[Drawing],
+    layer: &LayerSpec,
+    drawings: &[Arc<Drawing>],
     before: Option<&Arc<Boundaries>>,
 ) -> Result<(Mapping, MappingReport, Arc<Boundaries>), PipelineError> {
-    let drawn = scene.only_drawn();
+    let drawn = layer.only_drawn();
     let (mapping, mut report, boundaries) = map_drawn(&drawn, drawings, before, &mut |_| ())?;
-    let mapping = deformed::with_copies(scene, drawings, mapping, &mut report)?;
+    let mapping = deformed::with_copies(layer, drawings, mapping, &mut report)?;
     Ok((mapping, report, boundaries))
 }
 
-/// Maps a scene without copies.
+/// Maps a layer without copies.
 fn map_drawn(
-    scene: &Scene,
-    drawings: &[Drawing],
+    layer: &LayerSpec,
+    drawings: &[Arc<Drawing>],
     before: Option<&Arc<Boundaries>>,
     begins: &mut dyn FnMut(Stage),
 ) -> Result<(Mapping, MappingReport, Arc<Boundaries>), PipelineError> {
-    let names = scene.names();
+    let names = layer.names();
     let mut notes = Vec::new();
     for (name, drawing) in names.iter().zip(drawings) {
         notes.extend(drawing.notes.iter().map(|note| format!("pose '{name}': {note}")));
     }
     check_hole_counts(&names, drawings)?;
-    let landmarks = landmarks::sorted(scene, drawings)?;
+    let landmarks = landmarks::sorted(layer, drawings)?;
 
     let inside: Vec<Vec<Option<Point>>> = landmarks.points.iter().map(|point| point.at.clone()).collect();
-    let boundaries = match before.filter(|before| before.serve(scene, &landmarks.on_outline, &inside)) {
+    let boundaries = match before.filter(|before| before.serve(layer, &landmarks.on_outline, &inside)) {
         Some(same) => Arc::clone(same),
         None => {
             let before = before.map(Arc::as_ref);
             Arc::new(Boundaries::new(
-                scene,
+                layer,
                 drawings,
                 &landmarks.on_outline,
                 &inside,
@@ -127,7 +116,7 @@ fn map_drawn(
         .map(|at| at.iter().zip(&measured).map(|(&t, outline)| outline.at(t)).collect())
         .collect();
     let triangulated =
-        |polygons: &[Outline], effort| bare_mesh(scene, drawings, polygons, &landmarks, &anchors, effort);
+        |polygons: &[Outline], effort| bare_mesh(layer, drawings, polygons, &landmarks, &anchors, effort);
     let mut bare = triangulated(&simplified.polygons, Effort::Full)?;
     let mut first = None;
     let varied = if bare.mesh.steiner > 0 {
@@ -144,10 +133,9 @@ fn map_drawn(
     }
 
     begins(Stage::Refinement);
-    let options = RefineOptions::default().with_edge_length(scene.mesh.edge_length);
     let guide = boundaries.guide.as_ref().map(|guide| guide as &dyn Guide);
     let refined = |bare: &Bare| {
-        refine_guided(&bare.mesh, &options, guide).map_err(|error| PipelineError::stage(&names, None, error))
+        refine_guided(&bare.mesh, &layer.mesh.refine, guide).map_err(|error| PipelineError::stage(&names, None, error))
     };
     let (mut mesh, mut refinement) = refined(&bare)?;
     if let Some((bare_first, simplified_first)) = first {
@@ -220,32 +208,34 @@ struct Bare {
 
 /// The triangulation of the polygons with everything inside them.
 fn bare_mesh(
-    scene: &Scene,
-    drawings: &[Drawing],
+    layer: &LayerSpec,
+    drawings: &[Arc<Drawing>],
     polygons: &[Outline],
     landmarks: &Landmarks,
     anchors: &[Vec<Point>],
     effort: Effort,
 ) -> Result<Bare, PipelineError> {
-    let label = |name: &String, line: usize| LandmarkLabel {
-        name: name.clone(),
-        line,
-    };
     let labels = Labels {
-        points: landmarks.points.iter().map(|l| label(&l.name, l.line)).collect(),
-        paths: landmarks.paths.iter().map(|l| label(&l.name, l.line)).collect(),
+        points: landmarks.points.iter().map(|l| l.name.clone()).collect(),
+        paths: landmarks.paths.iter().map(|l| l.name.clone()).collect(),
         path_poses: (landmarks.paths.iter())
             .map(|path| path.at.iter().position(Option::is_some).unwrap_or(0))
             .collect(),
     };
     let mut refusal = PipelineError::stage(&[], None, "no polygon");
     for share in FINER_LINES {
-        let (features, notes) = landmarks.features(scene, drawings, polygons, anchors, share * scene.mesh.simplify)?;
+        let (features, notes) = landmarks.features(
+            layer,
+            drawings,
+            polygons,
+            anchors,
+            share * layer.mesh.simplify.tolerance,
+        )?;
         match triangulate_features(polygons, &features, effort) {
             Ok((mesh, report)) => return Ok(Bare { mesh, report, notes }),
             Err(error) => {
                 let may_be_coarse = triangulation::concerns_a_path(&error);
-                refusal = triangulation::refusal(&scene.names(), &labels, error);
+                refusal = triangulation::refusal(&layer.names(), &labels, error);
                 if !may_be_coarse {
                     break;
                 }
@@ -255,8 +245,8 @@ fn bare_mesh(
     Err(refusal)
 }
 
-fn check_hole_counts(names: &[String], drawings: &[Drawing]) -> Result<(), PipelineError> {
-    let holes = |drawing: &Drawing| drawing.outline.holes().len();
+fn check_hole_counts(names: &[String], drawings: &[Arc<Drawing>]) -> Result<(), PipelineError> {
+    let holes = |drawing: &Arc<Drawing>| drawing.outline.holes().len();
     let expected = drawings.first().map_or(0, holes);
     match drawings.iter().position(|drawing| holes(drawing) != expected) {
         None => Ok(()),

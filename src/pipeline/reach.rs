@@ -15,13 +15,12 @@
 //! Limits: a search, not a proof: between the first step's places a narrow valley may be missed.
 
 use super::blending::blend_options;
-use super::layout::placed;
-use super::{PipelineError, map_drawings, read_drawings, weight_provider};
+use super::spec::{CharacterSpec, Places};
+use super::{PipelineError, automatic_places, editable_weights, map_layer};
 use crate::blend::{BlendScratch, RigidBlend};
 use crate::math::{Point, point};
 use crate::mesh::{MeshPoint, PointLocator};
 use crate::pose::{LandmarkKind, PlacedLandmark, PoseSet};
-use crate::scene::Scene;
 use crate::solve::{DenseMatrix, SolvedDense};
 use crate::weights::WeightProvider;
 
@@ -204,21 +203,30 @@ pub fn reach_near(
     search.found(at)
 }
 
-/// As [`reach`], for a scene and the names of its landmarks: those on the outline and points inside.
+/// As [`reach`], for a character of one layer and the names of its landmarks: those on the outline and points inside.
 ///
 /// # Errors
 /// [`PipelineError`] from any stage before the textures, or if a landmark does not exist or is a line.
 pub fn reach_landmarks(
-    scene: &Scene,
+    spec: &CharacterSpec,
     targets: &[(String, Point)],
     options: &ReachOptions,
 ) -> Result<Reach, PipelineError> {
-    let drawings = read_drawings(scene)?;
-    let (mapping, report) = map_drawings(scene, &drawings)?;
-    let every: Vec<usize> = (0..scene.poses.len()).collect();
-    let scene = &placed(scene, [(every.as_slice(), &mapping)])?;
-    let weights = weight_provider(scene, None)?;
-    let blend = RigidBlend::new(&mapping.poses, &blend_options(scene, &mapping))?;
+    spec.check()?;
+    let [layer] = spec.layers.as_slice() else {
+        return Err(PipelineError::Layered {
+            layers: spec.layers.iter().map(|layer| format!("'{}'", layer.name)).collect(),
+        });
+    };
+    let (mapping, report) = map_layer(layer)?;
+    // The layer may have the poses in another order than the space: here, the layer's counts.
+    let order = spec.poses_of(layer);
+    let places: Vec<Vec<f64>> = match &spec.space.places {
+        Places::Given(places) => order.iter().map(|&pose| places[pose].clone()).collect(),
+        Places::Automatic => automatic_places(&mapping),
+    };
+    let weights = editable_weights(&layer.names(), &places, &spec.space.weights)?;
+    let blend = RigidBlend::new(&mapping.poses, &blend_options(layer, &mapping))?;
     let is_point = |landmark: &&PlacedLandmark| landmark.kind != LandmarkKind::Line;
     let shape_point = |(name, _): &(String, Point)| {
         let found = report
@@ -249,8 +257,12 @@ pub fn reach_landmarks(
     };
     let points: Vec<ShapePoint> = targets.iter().map(shape_point).collect::<Result<_, _>>()?;
     let targets: Vec<Point> = targets.iter().map(|(_, target)| *target).collect();
-    let places: Vec<Vec<f64>> = scene.poses.iter().map(|pose| pose.at.clone()).collect();
-    reach(weights.as_ref(), &blend, &places, &points, &targets, options)
+    let mut found = reach(&weights, &blend, &places, &points, &targets, options)?;
+    let of_layer = found.weights.clone();
+    for (&pose, weight) in order.iter().zip(of_layer) {
+        found.weights[pose] = weight;
+    }
+    Ok(found)
 }
 
 struct Search<'a> {

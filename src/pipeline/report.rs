@@ -5,7 +5,7 @@ use crate::compatible::{RefineReport, SimplifyReport, TriangulateReport};
 use crate::matching::MatchReport;
 use crate::pose::{MeshQuality, PlacedLandmark};
 
-/// A stage of [`map_drawings`](super::map_drawings).
+/// A stage of [`map_layer`](super::map_layer).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Stage {

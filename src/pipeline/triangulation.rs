@@ -13,28 +13,13 @@ pub enum Refinement {
     Refine(RefineOptions),
 }
 
-/// What lies inside, in the order of [`crate::compatible::Features`].
+/// The names of what lies inside, in the order of [`crate::compatible::Features`].
 #[derive(Debug, Default)]
 pub(super) struct Labels {
-    pub(super) points: Vec<LandmarkLabel>,
-    pub(super) paths: Vec<LandmarkLabel>,
+    pub(super) points: Vec<String>,
+    pub(super) paths: Vec<String>,
     /// For each path a pose in which it is drawn.
     pub(super) path_poses: Vec<usize>,
-}
-
-/// How a message calls a landmark.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct LandmarkLabel {
-    /// Its name.
-    pub name: String,
-    /// The line of the scene file.
-    pub line: usize,
-}
-
-impl std::fmt::Display for LandmarkLabel {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "'{}' (line {})", self.name, self.line)
-    }
 }
 
 /// A mapping of polygons whose vertices already correspond: the mesh covers exactly these polygons.

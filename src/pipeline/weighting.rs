@@ -1,25 +1,11 @@
-//! The weights a scene asks for.
+//! The weights that a pose space asks for.
 
 use super::PipelineError;
-use crate::scene::{Provider, Radial, Scene, WeightRange};
-use crate::weights::{
-    self, BiharmonicOptions, BiharmonicWeights, PseudoPose, Range, RbfOptions, RbfWeights, WeightError, WeightProvider,
-};
+use super::spec::WeightOptions;
+use crate::weights::{BiharmonicWeights, RbfWeights, WeightError, WeightProvider};
 
 /// How far the sum of given weights may be from 1.
 const SUM_TOLERANCE: f64 = 1e-6;
-
-/// The weight provider of a scene that is [laid out](super::laid_out); `provider` overrides the scene's own choice.
-///
-/// # Errors
-/// [`PipelineError::Stage`], naming poses, if the layout allows no weights, or if the scene asks for what only the other
-/// provider has.
-pub fn weight_provider(scene: &Scene, provider: Option<Provider>) -> Result<Box<dyn WeightProvider>, PipelineError> {
-    Ok(match editable_weights(scene, provider)? {
-        EditableWeights::Biharmonic(weights) => weights,
-        EditableWeights::Rbf(weights) => weights,
-    })
-}
 
 /// Weights whose poses can be moved, which takes a small part of the time that new ones would.
 #[derive(Debug, Clone)]
@@ -69,57 +55,29 @@ impl WeightProvider for EditableWeights {
     }
 }
 
-/// As [`weight_provider`], for weights that will be edited.
+/// The weights of poses at `places`, which are called `names` in messages.
 ///
 /// # Errors
-/// As [`weight_provider`].
-pub fn editable_weights(scene: &Scene, provider: Option<Provider>) -> Result<EditableWeights, PipelineError> {
-    let places: Vec<Vec<f64>> = scene.poses.iter().map(|pose| pose.at.clone()).collect();
-    let pseudo_poses: Vec<PseudoPose> = scene
-        .pseudo_poses
-        .iter()
-        .map(|pseudo| PseudoPose {
-            from: pseudo.from.clone(),
-            at: pseudo.at.clone(),
-        })
-        .collect();
-    let refusal = |message: String| PipelineError::stage(&[], None, format!("pose space: {message}"));
-    let settings = &scene.pose_space;
-    let built: Result<EditableWeights, WeightError> = match provider.unwrap_or(scene.pose_space.provider) {
-        Provider::Biharmonic => {
-            let options = BiharmonicOptions {
-                epsilon: settings.epsilon,
-                range: match settings.range {
-                    WeightRange::Free => Range::Free,
-                    WeightRange::Unit => Range::Unit,
-                },
-                walls: settings.walls.clone(),
-                pseudo_poses,
-                ..BiharmonicOptions::default()
-            };
-            BiharmonicWeights::new(&places, &options).map(|w| EditableWeights::Biharmonic(Box::new(w)))
+/// [`PipelineError::Space`], naming poses, if the places allow no weights.
+pub fn editable_weights(
+    names: &[String],
+    places: &[Vec<f64>],
+    options: &WeightOptions,
+) -> Result<EditableWeights, PipelineError> {
+    let built: Result<EditableWeights, WeightError> = match options {
+        WeightOptions::Biharmonic(options) => {
+            BiharmonicWeights::new(places, options).map(|w| EditableWeights::Biharmonic(Box::new(w)))
         }
-        Provider::Rbf => {
-            if !settings.walls.is_empty() || settings.range != WeightRange::Free {
-                return Err(refusal(
-                    "radial weights know no walls and no bounds; remove them, or take biharmonic weights".to_owned(),
-                ));
-            }
-            let options = RbfOptions {
-                radial: match scene.pose_space.radial {
-                    Radial::BSpline => weights::Radial::BSpline,
-                    Radial::ThinPlate => weights::Radial::ThinPlate,
-                },
-                pseudo_poses,
-            };
-            RbfWeights::new(&places, &options).map(|w| EditableWeights::Rbf(Box::new(w)))
-        }
+        WeightOptions::Rbf(options) => RbfWeights::new(places, options).map(|w| EditableWeights::Rbf(Box::new(w))),
     };
-    let name = |pose: usize| match scene.poses.get(pose) {
-        Some(pose) => format!("'{}'", pose.name),
-        None => format!("pseudo-pose {}", pose - scene.poses.len()),
+    let name = |pose: usize| match names.get(pose) {
+        Some(pose) => format!("'{pose}'"),
+        None => format!("pseudo-pose {}", pose - names.len()),
     };
-    built.map_err(|error| refusal(error.naming(name)))
+    built.map_err(|source| PipelineError::Space {
+        message: source.naming(name),
+        source,
+    })
 }
 
 /// Weights given by hand, made to sum to exactly 1.

@@ -13,10 +13,10 @@ use toml::Spanned;
 
 use super::error::{SceneError, SceneProblem};
 use super::file::SceneFile;
-use super::settings::{
-    ArtChoice, ColourBlend, Holes, InputSettings, Layout, MeshSettings, PoseSpaceSettings, Provider, PseudoPose,
-    Radial, Scene, WeightRange,
-};
+use super::settings::{Holes, InputSettings, Layout, PoseSpaceSettings, Provider, Scene};
+use crate::pipeline::{ArtChoice, MeshOptions};
+use crate::render::ColourBlend;
+use crate::weights::{PseudoPose, Radial, Range};
 
 /// The version of the format.
 const VERSION: i64 = 1;
@@ -133,22 +133,7 @@ impl Reader<'_> {
             file: self.file.clone(),
             reference,
             input,
-            mesh: MeshSettings {
-                simplify: self.number(
-                    &written.mesh.simplify,
-                    "[mesh] simplify",
-                    MeshSettings::default().simplify,
-                    |v| v > 0.0 && v <= 0.5,
-                    "above 0 and at most 0.5, a fraction of the diagonal",
-                )?,
-                edge_length: self.number(
-                    &written.mesh.edge_length,
-                    "[mesh] edge_length",
-                    MeshSettings::default().edge_length,
-                    |v| (0.002..=1.0).contains(&v),
-                    "between 0.002 and 1, a fraction of the diagonal",
-                )?,
-            },
+            mesh: self.mesh(&written)?,
             layout: if is_placed { Layout::Given } else { Layout::Automatic },
             pose_space,
             blend: self.blend(&written, &names, &landmarks)?,
@@ -269,6 +254,25 @@ impl Reader<'_> {
         Ok(place.clone())
     }
 
+    fn mesh(&self, written: &SceneFile) -> Checked<MeshOptions> {
+        let mut mesh = MeshOptions::default();
+        mesh.simplify.tolerance = self.number(
+            &written.mesh.simplify,
+            "[mesh] simplify",
+            mesh.simplify.tolerance,
+            |v| v > 0.0 && v <= 0.5,
+            "above 0 and at most 0.5, a fraction of the diagonal",
+        )?;
+        mesh.refine.edge_length = self.number(
+            &written.mesh.edge_length,
+            "[mesh] edge_length",
+            mesh.refine.edge_length,
+            |v| (0.002..=1.0).contains(&v),
+            "between 0.002 and 1, a fraction of the diagonal",
+        )?;
+        Ok(mesh)
+    }
+
     fn input(&self, written: &SceneFile) -> Checked<InputSettings> {
         Ok(InputSettings {
             holes: self.choice(
@@ -326,8 +330,8 @@ impl Reader<'_> {
                 "between 0 and a million",
             )?,
             range: match bounded {
-                Some(_) => WeightRange::Unit,
-                None => WeightRange::Free,
+                Some(_) => Range::Unit,
+                None => Range::Free,
             },
             walls: match walls {
                 Some(walls) => self.walls(walls)?,

@@ -1,7 +1,7 @@
 //! Layers: parts of a character that lie in front of one another, each an N-way shape of its own.
 
-use super::settings::{Anchor, Scene};
-use crate::blend::Reference;
+use super::settings::Scene;
+use crate::blend::{Anchor, Reference, Region, SoftAnchor};
 use crate::math::Point;
 use crate::scene::PoseSource;
 
@@ -75,7 +75,7 @@ impl Scene {
         scene.poses = kept.iter().map(|&k| self.poses[k].clone()).collect();
         for pose in &mut scene.poses {
             if let PoseSource::Deformed(copy) = &mut pose.source {
-                copy.of = place(copy.of).unwrap_or(usize::MAX);
+                copy.copy.of = place(copy.copy.of).unwrap_or(usize::MAX);
             }
         }
         scene.reference = self.reference.and_then(place);
@@ -103,13 +103,13 @@ impl Scene {
         scene.paths.retain(|path| path.layer == Some(layer));
         scene.blend.anchor = match &self.blend.anchor {
             Anchor::Centroid => Anchor::Centroid,
-            Anchor::Landmark(landmark) => place(*landmark).map_or(Anchor::Centroid, Anchor::Landmark),
+            Anchor::Point(landmark) => place(*landmark).map_or(Anchor::Centroid, Anchor::Point),
             Anchor::Soft(list) => {
                 let own: Vec<_> = list
                     .iter()
                     .filter_map(|soft| {
-                        let landmark = place(soft.landmark)?;
-                        Some(super::SoftAnchor { landmark, ..*soft })
+                        let point = place(soft.point)?;
+                        Some(SoftAnchor { point, ..*soft })
                     })
                     .collect();
                 if own.is_empty() {
@@ -121,10 +121,15 @@ impl Scene {
         };
         scene.blend.regions = (self.blend.regions.iter())
             .filter_map(|region| {
-                let landmark = place(region.landmark)?;
-                Some(super::Region { landmark, ..*region })
+                let point = place(region.point)?;
+                Some(Region { point, ..*region })
             })
             .collect();
         scene
     }
+}
+
+/// How messages begin that are about a layer.
+pub(super) fn prefix(layer: Option<&str>) -> String {
+    layer.map(|layer| format!("layer '{layer}': ")).unwrap_or_default()
 }

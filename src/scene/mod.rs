@@ -6,27 +6,32 @@
 //!
 //! Keys that a later release will serve are known and refused by name, never ignored.
 
-mod animation;
+mod build_error;
 mod convert;
+mod drawings;
 mod error;
 mod file;
 mod layers;
 mod new;
 mod settings;
 mod shape;
+mod shape_model;
 mod source;
+mod spec;
+mod workbench;
 
-pub use animation::{Animation, Key};
+pub use build_error::SceneBuildError;
 pub use error::{SceneError, SceneProblem};
 pub use layers::{LayerAnchor, SceneLayer};
 pub use new::{NewPose, scene_text};
 pub use settings::{
-    Anchor, ArtChoice, Background, BlendSettings, ColourBlend, DeformedCopy, DrawnSource, Extent, Facing, HandleMove,
-    Holes, InputSettings, Layout, MeshSettings, PoseSource, PoseSpaceSettings, Provider, PseudoPose, Radial, Region,
-    Scene, SceneLandmark, ScenePath, ScenePose, SoftAnchor, WeightRange,
+    DeformedSource, DrawnSource, Holes, InputSettings, Layout, PoseSource, PoseSpaceSettings, Provider, Scene,
+    SceneLandmark, ScenePath, ScenePose,
 };
 pub use shape::{
     AxisSettings, JointScaling, JointSettings, JointShift, JointTurn, PseudoExample, ShapeExample, ShapeFile,
     ShapeProblem, ShapeScene, SheetSettings, SkeletonSettings, SkinWeights, SubdivisionSettings, Subject,
     SurfacePoints,
 };
+pub use shape_model::{ShapeForm, ShapeModel, ShapeModelError, ShapeSpace, ShapeTake};
+pub use workbench::{DrawingFiles, Workbench};

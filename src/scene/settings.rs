@@ -1,10 +1,15 @@
 //! The validated scene.
 
-use crate::blend::{FrameGuard, Reference, Stretch};
 use std::path::{Path, PathBuf};
 
-use super::{Animation, SceneLayer};
+use super::SceneLayer;
+use crate::animation::Animation;
+use crate::blend::BlendOptions;
+use crate::input::Extent;
 use crate::math::Point;
+use crate::pipeline::{ArtChoice, DeformedCopy, Facing, MeshOptions};
+use crate::render::ColourBlend;
+use crate::weights::{PseudoPose, Radial, Range};
 
 /// A scene: everything the artist says about a character.
 ///
@@ -19,13 +24,13 @@ pub struct Scene {
     /// How drawings become outlines.
     pub input: InputSettings,
     /// How fine the mesh is.
-    pub mesh: MeshSettings,
+    pub mesh: MeshOptions,
     /// Whether the poses are where the file says.
     pub layout: Layout,
     /// How weights fall off over the pose space.
     pub pose_space: PoseSpaceSettings,
-    /// How shapes are blended.
-    pub blend: BlendSettings,
+    /// How shapes are blended: points are landmarks, by their places in `landmarks`; whole turns are those of the poses.
+    pub blend: BlendOptions,
     /// How sharply textures follow the nearest pose, `sigma`, from 0 (as the shape) to 1 (nearest pose only).
     pub texture_sharpness: f64,
     /// In which light colours are averaged.
@@ -44,36 +49,6 @@ pub struct Scene {
     pub layers: Vec<SceneLayer>,
     /// What is played.
     pub animation: Animation,
-}
-
-/// In which light the colours of drawings are averaged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum ColourBlend {
-    /// As the numbers stand in the files, like most drawing programs.
-    #[default]
-    Plain,
-    /// In linear light: mixtures are brighter, as of real lights.
-    Linear,
-}
-
-/// Whether vector drawings are drawn as curves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum ArtChoice {
-    /// As curves, where all drawings of a layer are vector drawings.
-    #[default]
-    Curves,
-    /// From pixels.
-    Pixels,
-}
-
-/// How much of a file a drawing is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Extent {
-    /// All that is drawn in it.
-    #[default]
-    Everything,
-    /// Its element alone.
-    Element,
 }
 
 /// Whether holes of the drawings are holes of the shape.
@@ -105,25 +80,6 @@ impl Default for InputSettings {
     }
 }
 
-/// How fine the mesh is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MeshSettings {
-    /// The error of the simplified boundary, as a fraction of a pose's diagonal.
-    pub simplify: f64,
-    /// The length of the mesh's edges, as a fraction of a pose's diagonal.
-    pub edge_length: f64,
-}
-
-impl Default for MeshSettings {
-    /// 2 % of the diagonal for the boundary, 5 % for the edges.
-    fn default() -> Self {
-        Self {
-            simplify: 0.02,
-            edge_length: 0.05,
-        }
-    }
-}
-
 /// Which weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Provider {
@@ -146,16 +102,6 @@ impl Provider {
     }
 }
 
-/// Which radial function the cardinal basis uses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Radial {
-    /// The cubic B-spline of SBE, with local support.
-    #[default]
-    BSpline,
-    /// The thin plate.
-    ThinPlate,
-}
-
 /// Where the places of the poses come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Layout {
@@ -165,16 +111,6 @@ pub enum Layout {
     /// From how far the drawings are from one another. That is known when they are mapped; [`Scene::laid_out`] then takes
     /// the places. Until then they are even on a circle.
     Automatic,
-}
-
-/// What values weights may have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum WeightRange {
-    /// Any.
-    #[default]
-    Free,
-    /// From 0 to 1.
-    Unit,
 }
 
 /// How weights fall off over the pose space.
@@ -187,7 +123,7 @@ pub struct PoseSpaceSettings {
     /// The weight of the squared gradient in [`Provider::Biharmonic`].
     pub epsilon: f64,
     /// What values the weights of [`Provider::Biharmonic`] may have.
-    pub range: WeightRange,
+    pub range: Range,
     /// Polylines that influence may not cross in [`Provider::Biharmonic`].
     pub walls: Vec<Vec<[f64; 2]>>,
 }
@@ -199,69 +135,10 @@ impl Default for PoseSpaceSettings {
             provider: Provider::default(),
             radial: Radial::default(),
             epsilon: 1e-3,
-            range: WeightRange::default(),
+            range: Range::default(),
             walls: Vec::new(),
         }
     }
-}
-
-/// What keeps the blended shape in its place.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub enum Anchor {
-    /// The area-weighted centroid moves linearly in the weights.
-    #[default]
-    Centroid,
-    /// The landmark of this index does.
-    Landmark(usize),
-    /// These landmarks do, as far as the shape gives way.
-    Soft(Vec<SoftAnchor>),
-}
-
-/// A landmark that is drawn to where the weights put it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SoftAnchor {
-    /// The landmark's index.
-    pub landmark: usize,
-    /// How strongly; see [`crate::blend::SoftAnchor::stiffness`].
-    pub stiffness: f64,
-}
-
-/// A part of the shape around a landmark that is stiffer than the rest, or may not be stretched far.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Region {
-    /// The landmark's index.
-    pub landmark: usize,
-    /// How far it reaches along the mesh, as a fraction of a pose's diagonal.
-    pub radius: f64,
-    /// What the energy of its triangles is multiplied by; 1 changes nothing.
-    pub stiffness: f64,
-    /// By which factor it may be stretched or squashed more than in any pose; infinite for no limit.
-    pub stretch_limit: f64,
-}
-
-/// How shapes are blended.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct BlendSettings {
-    /// From which pose.
-    pub reference: Reference,
-    /// How stretches are blended.
-    pub stretch: Stretch,
-    /// What stays in place.
-    pub anchor: Anchor,
-    /// What happens to frames with inverted triangles.
-    pub guard: FrameGuard,
-    /// Parts that are stiffer than others.
-    pub regions: Vec<Region>,
-}
-
-/// Whether a drawing is used as it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Facing {
-    /// As drawn.
-    #[default]
-    AsDrawn,
-    /// Reflected left to right on input.
-    Mirrored,
 }
 
 /// One pose of a scene.
@@ -285,7 +162,7 @@ pub enum PoseSource {
     /// A drawing of its own.
     Drawn(DrawnSource),
     /// Another pose, deformed.
-    Deformed(DeformedCopy),
+    Deformed(DeformedSource),
     /// Each of its layers has its own; see [`Scene::layers`].
     Layered,
 }
@@ -305,34 +182,13 @@ pub struct DrawnSource {
     pub extent: Extent,
 }
 
-/// A copy of another pose whose handles are moved as rigidly as possible (NWM 3.2). It has the other's picture, and what
-/// reflects that reflects it, too.
+/// A copy of another pose, deformed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DeformedCopy {
-    /// The pose that is deformed; it may be a copy itself. Never the pose itself, directly or by way of others.
-    pub of: usize,
+pub struct DeformedSource {
     /// The line of the scene file with the handles.
     pub line: usize,
-    /// At least one, but in a layer that stays as it is.
-    pub handles: Vec<HandleMove>,
-}
-
-/// A point of a pose and where it goes, in the coordinates of the drawing as it is in its file.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HandleMove {
-    /// On the pose that is deformed.
-    pub from: Point,
-    /// On the copy.
-    pub to: Point,
-}
-
-/// A blend that is wanted elsewhere than it is found (SBE 4).
-#[derive(Debug, Clone, PartialEq)]
-pub struct PseudoPose {
-    /// Where the blend is found.
-    pub from: Vec<f64>,
-    /// Where it is wanted.
-    pub at: Vec<f64>,
+    /// Which pose is deformed, and how. In a layer that stays as it is there are no handles.
+    pub copy: DeformedCopy,
 }
 
 /// A point that the artist names on several poses.
@@ -362,16 +218,6 @@ pub struct ScenePath {
     pub at: Vec<Option<Vec<Point>>>,
 }
 
-/// What is behind the character.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Background {
-    /// Nothing.
-    #[default]
-    Transparent,
-    /// A colour: red, green, blue, alpha, not premultiplied.
-    Colour([u8; 4]),
-}
-
 impl Scene {
     /// The dimension of the pose space.
     #[must_use]
@@ -387,9 +233,12 @@ impl Scene {
         for (pose, place) in scene.poses.iter_mut().zip(places) {
             pose.at.clone_from(place);
         }
-        scene.animation = self
+        let moved = self
             .animation
             .through(scene.poses.iter().map(|pose| pose.at.as_slice()));
+        if let Ok(moved) = moved {
+            scene.animation = moved;
+        }
         scene.layout = Layout::Given;
         scene
     }
@@ -416,17 +265,11 @@ impl Scene {
         for _ in 0..=self.poses.len() {
             match &self.poses.get(at)?.source {
                 PoseSource::Drawn(drawing) => return Some((at, drawing)),
-                PoseSource::Deformed(copy) => at = copy.of,
+                PoseSource::Deformed(copy) => at = copy.copy.of,
                 PoseSource::Layered => return None,
             }
         }
         None
-    }
-
-    /// The scene without its deformed copies: what is read and matched.
-    #[must_use]
-    pub fn only_drawn(&self) -> Self {
-        self.with_poses(&self.drawn_poses())
     }
 
     /// A short name for files made from this scene: the file's own, or its folder's if it is called `scene.toml`.

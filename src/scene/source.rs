@@ -42,6 +42,15 @@ impl Scene {
         Ok(files)
     }
 
+    /// The refusal of a pose without a drawing, which no validated scene has.
+    pub(super) fn without_drawing(&self, pose: usize) -> SceneError {
+        SceneError {
+            file: self.file.clone(),
+            line: None,
+            problem: SceneProblem::Format(format!("pose '{}' has no drawing", self.poses[pose].name)),
+        }
+    }
+
     /// The path of the drawing that pose `index` shows, with every symbolic link resolved.
     ///
     /// # Errors
@@ -49,11 +58,7 @@ impl Scene {
     pub fn source_path(&self, index: usize) -> Result<PathBuf, SceneError> {
         let pose = &self.poses[index];
         let Some((_, drawing)) = self.drawing_of(index) else {
-            return Err(SceneError {
-                file: self.file.clone(),
-                line: None,
-                problem: SceneProblem::Format(format!("pose '{}' has no drawing", pose.name)),
-            });
+            return Err(self.without_drawing(index));
         };
         let written = drawing.file.display().to_string();
         let failed = |problem| SceneError {

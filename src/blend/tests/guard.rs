@@ -78,7 +78,7 @@ proptest! {
         let anchor = if anchors.is_empty() {
             Anchor::Centroid
         } else {
-            Anchor::Soft(anchors.iter().map(|&(vertex, stiffness)| SoftAnchor { vertex, stiffness }).collect())
+            Anchor::Soft(anchors.iter().map(|&(point, stiffness)| SoftAnchor { point, stiffness }).collect())
         };
         for stretch in STRETCHES {
             let plain = BlendOptions { anchor: anchor.clone(), ..options(Reference::Canonical, stretch) };

@@ -5,7 +5,7 @@ use super::*;
 fn soft(anchors: &[(usize, f64)]) -> BlendOptions {
     let anchors = anchors
         .iter()
-        .map(|&(vertex, stiffness)| SoftAnchor { vertex, stiffness });
+        .map(|&(point, stiffness)| SoftAnchor { point, stiffness });
     BlendOptions {
         anchor: Anchor::Soft(anchors.collect()),
         ..BlendOptions::default()
@@ -23,7 +23,7 @@ fn anchors_go_where_a_frame_wants_them() {
         (BlendOptions::default(), None),
         (
             BlendOptions {
-                anchor: Anchor::Vertex(5),
+                anchor: Anchor::Point(5),
                 ..BlendOptions::default()
             },
             Some(5),
@@ -104,7 +104,7 @@ fn a_stiff_region_keeps_its_shape_and_gives_its_neighbours_the_work() {
         (found[13 + 4] - found[13]).y
     };
     let region = |stiffness| Region {
-        vertex: 13 + 2,
+        point: 13 + 2,
         radius: 0.5,
         stiffness,
         stretch_limit: f64::INFINITY,
@@ -120,7 +120,7 @@ fn a_stiff_region_keeps_its_shape_and_gives_its_neighbours_the_work() {
     };
     assert!(matches!(
         refused(Region {
-            vertex: 99,
+            point: 99,
             ..region(1.0)
         }),
         BlendError::NoSuchVertex { .. }
@@ -152,7 +152,7 @@ fn a_stretch_limit_holds_outside_the_poses_and_changes_nothing_inside() {
     for stretch in STRETCHES {
         let limited = |stretch_limit| BlendOptions {
             regions: vec![Region {
-                vertex: 7,
+                point: 7,
                 radius: 10.0,
                 stiffness: 1.0,
                 stretch_limit,

@@ -244,7 +244,7 @@ fn an_anchored_vertex_moves_linearly_and_turns_are_obeyed() {
     let (topology, poses) = bent();
     let set = pose_set(&topology, &poses);
     let anchored = BlendOptions {
-        anchor: Anchor::Vertex(5),
+        anchor: Anchor::Point(5),
         ..BlendOptions::default()
     };
     let found = blend_once(&set, &anchored, &[0.25, 0.25, 0.5]).expect("a blend");
@@ -308,7 +308,7 @@ fn bad_input_is_refused() {
         BlendError::NoSuchPose { pose: 3, last: 2 }
     );
     let no_vertex = BlendOptions {
-        anchor: Anchor::Vertex(9),
+        anchor: Anchor::Point(9),
         ..BlendOptions::default()
     };
     assert!(RigidBlend::new(&set, &no_vertex).is_err());

@@ -5,8 +5,8 @@
 //! of another.
 
 use anyhow::Context as _;
+use inbetween::animation::Background;
 use inbetween::export::Label;
-use inbetween::scene::Background;
 use sha2::{Digest as _, Sha256};
 
 use super::job::Job;

@@ -1,8 +1,8 @@
 //! An animated GIF.
 
-use inbetween::export::{Backdrop, ColourCount, GifWriter, Palette, PendingFile};
+use inbetween::animation::{Animation, Background};
+use inbetween::export::{Backdrop, ColourCount, FASTEST_GIF, GifWriter, Palette, PendingFile, WriteError};
 use inbetween::pipeline::Character;
-use inbetween::scene::{Animation, Background};
 
 use super::job::Job;
 use crate::cli::frames;
@@ -11,13 +11,14 @@ use crate::cli::frames;
 const PALETTE_FRAMES: usize = 32;
 
 pub(super) fn run(job: Job<'_>) -> anyhow::Result<()> {
-    let file = PendingFile::create(job.output)?;
+    let mut file = PendingFile::create(job.output)?;
+    let refusal = |error: WriteError| error.at(job.output);
     let character = job.character()?;
     let animation = job.animation();
-    if animation.fps > GifWriter::FASTEST {
+    if animation.fps > FASTEST_GIF {
         job.verbosity.note(&format!(
             "note: a GIF shows at most {} frames a second, so it will play slower than it should; choose a lower --fps",
-            GifWriter::FASTEST
+            FASTEST_GIF
         ));
     }
     let palette = palette(&character, animation)?;
@@ -26,11 +27,20 @@ pub(super) fn run(job: Job<'_>) -> anyhow::Result<()> {
         Background::Colour([_, _, _, 255]) => Backdrop::Opaque,
         _ => Backdrop::Clear,
     };
-    let mut writer = GifWriter::new(file, job.size(), animation.fps, palette, backdrop, job.repetition())?;
+    let mut writer = GifWriter::new(
+        &mut file,
+        job.size(),
+        animation.fps,
+        palette,
+        backdrop,
+        job.repetition(),
+    )
+    .map_err(refusal)?;
     frames::in_order(&character, animation, &job.numbers, &progress, |frame| {
-        Ok(writer.add(frame)?)
+        Ok(writer.add(frame).map_err(refusal)?)
     })?;
-    writer.finish()?;
+    writer.finish().map_err(refusal)?;
+    file.commit()?;
     job.done(&character, &progress)
 }
 

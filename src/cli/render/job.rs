@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use anyhow::Context as _;
+use inbetween::animation::Animation;
 use inbetween::export::Repetition;
 use inbetween::pipeline::Character;
-use inbetween::scene::{Animation, Scene};
+use inbetween::scene::Scene;
 
 use crate::cli::Verbosity;
 use crate::cli::frames;
@@ -53,8 +53,7 @@ impl Job<'_> {
 
     /// The scene's character; its notes are told.
     pub(super) fn character(&self) -> anyhow::Result<Character> {
-        let file = || self.scene.file.display().to_string();
-        let character = Character::supersampled(self.scene, self.size(), self.supersample).with_context(file)?;
+        let character = self.scene.character(self.size(), self.supersample)?;
         for note in character.notes() {
             self.verbosity.note(&format!("note: {note}"));
         }

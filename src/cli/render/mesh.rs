@@ -28,7 +28,7 @@ pub(super) fn spine(job: Job<'_>) -> anyhow::Result<()> {
 pub(super) fn runtime(job: Job<'_>) -> anyhow::Result<()> {
     let file = PendingFile::create(job.output)?;
     let character = job.character()?;
-    let whole = character.runtime_file(job.scene, texture_png)?;
+    let whole = character.runtime_file(job.animation(), texture_png)?;
     let written = runtime_bytes(&whole, Precision::Quantised).or_else(|_| runtime_bytes(&whole, Precision::Single));
     let (bytes, read) = written?;
     file.fill(&bytes)?;

@@ -15,8 +15,8 @@ mod webp;
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use inbetween::pipeline::laid_out;
-use inbetween::scene::{Background, Scene};
+use inbetween::animation::Background;
+use inbetween::scene::Scene;
 
 use self::format::Format;
 use self::job::Job;
@@ -106,9 +106,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
             "--resume works with a folder of files only; a single file is written whole, so render it again".to_owned(),
         ));
     }
-    let scene = Scene::open(&arguments.scene)?;
-    let file = scene.file.display().to_string();
-    let mut scene = laid_out(scene).context(file)?;
+    let mut scene = Scene::open(&arguments.scene)?.with_automatic_places()?;
     if let Some(fps) = arguments.fps {
         scene.animation.fps = fps;
     }

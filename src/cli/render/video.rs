@@ -1,7 +1,7 @@
 //! MP4 and WebM, by ffmpeg.
 
+use inbetween::animation::Background;
 use inbetween::export::{PendingFile, VideoKind, VideoWriter};
-use inbetween::scene::Background;
 
 use super::job::Job;
 use crate::cli::frames;

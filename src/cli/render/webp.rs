@@ -1,19 +1,21 @@
 //! An animated WebP.
 
-use inbetween::export::{PendingFile, WebPWriter};
+use inbetween::export::{PendingFile, WebPWriter, WriteError};
 
 use super::job::Job;
 use crate::cli::frames;
 
 pub(super) fn run(job: Job<'_>) -> anyhow::Result<()> {
-    let file = PendingFile::create(job.output)?;
+    let mut file = PendingFile::create(job.output)?;
+    let refusal = |error: WriteError| error.at(job.output);
     let character = job.character()?;
     let progress = job.progress();
     let animation = job.animation();
-    let mut writer = WebPWriter::new(file, job.size(), animation.fps, job.repetition())?;
+    let mut writer = WebPWriter::new(&mut file, job.size(), animation.fps, job.repetition()).map_err(refusal)?;
     frames::in_order(&character, animation, &job.numbers, &progress, |frame| {
-        Ok(writer.add(frame)?)
+        Ok(writer.add(frame).map_err(refusal)?)
     })?;
-    writer.finish()?;
+    writer.finish().map_err(refusal)?;
+    file.commit()?;
     job.done(&character, &progress)
 }

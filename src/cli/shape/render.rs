@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
+use inbetween::animation::Background;
 use inbetween::export::{
     Label, ObjForm, ObjTexture, PendingFile, Sequence, SequenceKind, png_bytes, shape_gltf_bytes, write_obj,
 };
-use inbetween::pipeline::{ShapeForm, ShapeModel};
 use inbetween::render::Frame;
-use inbetween::scene::{Background, ShapeScene};
+use inbetween::scene::ShapeScene;
+use inbetween::scene::{ShapeForm, ShapeModel};
 use rayon::prelude::*;
 
 use super::check_place;

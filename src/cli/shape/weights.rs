@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use inbetween::pipeline::ShapeSpace;
 use inbetween::scene::ShapeScene;
+use inbetween::scene::ShapeSpace;
 use serde::Serialize;
 
 use super::check_place;

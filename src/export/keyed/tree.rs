@@ -161,9 +161,9 @@ impl Pictures {
             .flat_map(|y| frame.pixels[y * frame.width + left..][..width].iter().copied())
             .collect();
         let cut = Frame { width, height, pixels };
-        let png = png_bytes(&cut).map_err(|reason| Fault::Picture {
+        let png = png_bytes(&cut).map_err(|error| Fault::Picture {
             id: picture.id.clone(),
-            reason,
+            reason: error.to_string(),
         })?;
         let file = PictureFile { place, png };
         let known = self.files.iter().position(|other| *other == file);

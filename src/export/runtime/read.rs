@@ -215,13 +215,13 @@ impl<'a> Reader<'a> {
         };
         let anchor = match self.choice(3, "anchor")? {
             0 => Anchor::Centroid,
-            1 => Anchor::Vertex(self.vertex(vertices, "an anchor")?),
+            1 => Anchor::Point(self.vertex(vertices, "an anchor")?),
             _ => {
                 let count = self.word("the anchors")? as usize;
                 self.room(count, 10, "the anchors")?;
                 let anchors = (0..count).map(|_| {
                     Ok(SoftAnchor {
-                        vertex: self.vertex(vertices, "an anchor")?,
+                        point: self.vertex(vertices, "an anchor")?,
                         stiffness: self.finite("an anchor")?,
                     })
                 });
@@ -240,7 +240,7 @@ impl<'a> Reader<'a> {
         self.room(region_count, 26, "the regions")?;
         let regions = (0..region_count).map(|_| {
             let region = Region {
-                vertex: self.vertex(vertices, "a region")?,
+                point: self.vertex(vertices, "a region")?,
                 radius: self.finite("a region")?,
                 stiffness: self.finite("a region")?,
                 stretch_limit: self.double("a region")?,

@@ -45,15 +45,15 @@ fn character() -> RuntimeFile {
                 stretch: if k == 0 { Stretch::Log } else { Stretch::Limited },
                 anchor: if k == 0 {
                     Anchor::Soft(vec![SoftAnchor {
-                        vertex: 2,
+                        point: 2,
                         stiffness: 30.0,
                     }])
                 } else {
-                    Anchor::Vertex(3)
+                    Anchor::Point(3)
                 },
                 turns: if k == 0 { vec![0, 1] } else { vec![] },
                 regions: vec![Region {
-                    vertex: 4,
+                    point: 4,
                     radius: 0.2,
                     stiffness: 2.0,
                     stretch_limit: f64::INFINITY,

@@ -118,7 +118,7 @@ impl Writer {
         });
         match &options.anchor {
             Anchor::Centroid => self.bytes.push(0),
-            Anchor::Vertex(vertex) => {
+            Anchor::Point(vertex) => {
                 self.bytes.push(1);
                 self.index(*vertex, vertices)?;
             }
@@ -126,7 +126,7 @@ impl Writer {
                 self.bytes.push(2);
                 self.count(anchors.len())?;
                 for anchor in anchors {
-                    self.index(anchor.vertex, vertices)?;
+                    self.index(anchor.point, vertices)?;
                     self.double(anchor.stiffness);
                 }
             }
@@ -136,7 +136,7 @@ impl Writer {
             .extend(options.turns.iter().flat_map(|turns| turns.to_le_bytes()));
         self.count(options.regions.len())?;
         for region in &options.regions {
-            self.index(region.vertex, vertices)?;
+            self.index(region.point, vertices)?;
             for number in [region.radius, region.stiffness, region.stretch_limit] {
                 self.double(number);
             }

@@ -1,6 +1,7 @@
 //! A character as the crate's own file for playing.
 
 use super::{Character, PipelineError};
+use crate::animation::Animation;
 use crate::export::runtime::{
     RuntimeAnimation, RuntimeFile, RuntimeLayer, RuntimePose, RuntimeTexture, RuntimeTie, WeightField,
 };
@@ -8,7 +9,6 @@ use crate::math::{Point, point};
 use crate::pipeline::LayerShape;
 use crate::pose::PoseSet;
 use crate::render::puppet::{PuppetLayer, PuppetTexture};
-use crate::scene::{Animation, Scene};
 
 /// Samples of the weights along a side of the plane.
 const GRID: usize = 65;
@@ -16,34 +16,31 @@ const GRID: usize = 65;
 const MARGIN: f64 = 0.25;
 
 impl Character {
-    /// Everything that a player needs. `scene` is the one that the character was made of, [laid
-    /// out](crate::pipeline::laid_out); its animation is the one that is played. `encode` makes a PNG file of a texture.
+    /// Everything that a player needs. `animation` is the one that is played. `encode` makes a PNG file of a texture.
     ///
     /// # Errors
     /// [`PipelineError`] if the animation leaves the pose space, or what `encode` says.
-    pub fn runtime_file(
+    pub fn runtime_file<E: std::fmt::Display>(
         &self,
-        scene: &Scene,
-        encode: impl Fn(&PuppetTexture) -> Result<Vec<u8>, String>,
+        animation: &Animation,
+        encode: impl Fn(&PuppetTexture) -> Result<Vec<u8>, E>,
     ) -> Result<RuntimeFile, PipelineError> {
         let puppet = self.puppet();
-        let places: Vec<&[f64]> = scene.poses.iter().map(|pose| pose.at.as_slice()).collect();
-        let poses = scene
-            .poses
-            .iter()
+        let named = self.names.iter().zip(&self.places);
+        let poses = named
             .zip(self.figure.draw_orders())
-            .map(|(pose, order)| RuntimePose {
-                name: pose.name.clone(),
-                at: pose.at.clone(),
+            .map(|((name, at), order)| RuntimePose {
+                name: name.clone(),
+                at: at.clone(),
                 order: order.clone(),
             });
         let layers = self.figure.layers.iter().zip(&puppet.layers);
         Ok(RuntimeFile {
             size: puppet.size.map(|side| side as u32),
-            texture_sharpness: scene.texture_sharpness,
+            texture_sharpness: self.figure.texture_sharpness(),
             poses: poses.collect(),
-            field: self.field(&places)?,
-            animation: self.played(&scene.animation)?,
+            field: self.field()?,
+            animation: self.played(animation)?,
             layers: layers
                 .map(|(shape, layer)| {
                     runtime_layer(shape, layer, &encode).map_err(|problem| {
@@ -70,10 +67,9 @@ impl Character {
         })
     }
 
-    fn field(&self, places: &[&[f64]]) -> Result<Option<WeightField>, PipelineError> {
-        let points: Option<Vec<Point>> = places
-            .iter()
-            .map(|place| match place {
+    fn field(&self) -> Result<Option<WeightField>, PipelineError> {
+        let points: Option<Vec<Point>> = (self.places.iter())
+            .map(|place| match place.as_slice() {
                 [x, y] => Some(Point::new(*x, *y)),
                 _ => None,
             })
@@ -101,10 +97,10 @@ impl Character {
     }
 }
 
-fn runtime_layer(
+fn runtime_layer<E: std::fmt::Display>(
     shape: &LayerShape,
     layer: &PuppetLayer,
-    encode: impl Fn(&PuppetTexture) -> Result<Vec<u8>, String>,
+    encode: impl Fn(&PuppetTexture) -> Result<Vec<u8>, E>,
 ) -> Result<RuntimeLayer, String> {
     let poses = layer
         .poses
@@ -115,7 +111,7 @@ fn runtime_layer(
         let size = Point::new(texture.width as f64, texture.height as f64);
         Ok(RuntimeTexture {
             name: texture.name.clone(),
-            png: encode(texture)?,
+            png: encode(texture).map_err(|error| error.to_string())?,
             places: texture.places.iter().map(|p| p.component_div(&size)).collect(),
         })
     };

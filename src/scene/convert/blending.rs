@@ -3,10 +3,10 @@
 use toml::{Spanned, Value};
 
 use super::{Checked, Reader};
-use crate::blend::{FrameGuard, Reference, Stretch};
+use crate::blend::{Anchor, BlendOptions, FrameGuard, Reference, Region, SoftAnchor, Stretch};
 use crate::scene::error::SceneProblem;
 use crate::scene::file::{RegionTable, SceneFile};
-use crate::scene::settings::{Anchor, BlendSettings, Region, SceneLandmark, SoftAnchor};
+use crate::scene::settings::SceneLandmark;
 
 /// The stiffness of an anchor that is one of several and does not say its own: the shape gives way a little.
 const SOFT: f64 = 10.0;
@@ -21,7 +21,7 @@ impl Reader<'_> {
         written: &SceneFile,
         names: &[&str],
         landmarks: &[SceneLandmark],
-    ) -> Checked<BlendSettings> {
+    ) -> Checked<BlendOptions> {
         let table = &written.blend;
         let reference = match &table.reference {
             Some(name) if name.get_ref() != "canonical" => {
@@ -30,7 +30,7 @@ impl Reader<'_> {
             _ => Reference::Canonical,
         };
         let regions = written.region.iter().map(|region| self.region(region, landmarks));
-        Ok(BlendSettings {
+        Ok(BlendOptions {
             reference,
             stretch: self.choice(
                 &table.stretch,
@@ -48,6 +48,7 @@ impl Reader<'_> {
                 Some(anchor) => self.anchor(anchor, landmarks)?,
                 None => Anchor::Centroid,
             },
+            turns: Vec::new(),
             regions: regions.collect::<Checked<_>>()?,
         })
     }
@@ -67,7 +68,7 @@ impl Reader<'_> {
         };
         match written.get_ref() {
             Value::String(name) if name == "centroid" => Ok(Anchor::Centroid),
-            Value::String(name) => Ok(Anchor::Landmark(self.landmark_index(
+            Value::String(name) => Ok(Anchor::Point(self.landmark_index(
                 at,
                 name,
                 "[blend] anchor",
@@ -102,7 +103,7 @@ impl Reader<'_> {
 
     fn soft_anchor(&self, at: usize, name: &str, stiffness: f64, landmarks: &[SceneLandmark]) -> Checked<SoftAnchor> {
         Ok(SoftAnchor {
-            landmark: self.landmark_index(at, name, "[blend] anchor", landmarks)?,
+            point: self.landmark_index(at, name, "[blend] anchor", landmarks)?,
             stiffness: self.in_range(
                 at,
                 "stiffness of an anchor",
@@ -119,7 +120,7 @@ impl Reader<'_> {
         let stiffness = table.stiffness.unwrap_or(1.0);
         let limit = table.stretch_limit.unwrap_or(f64::INFINITY);
         Ok(Region {
-            landmark: self.landmark_index(at, &table.landmark, "a [[region]]", landmarks)?,
+            point: self.landmark_index(at, &table.landmark, "a [[region]]", landmarks)?,
             radius: self.in_range(
                 at,
                 "radius of a [[region]]",

@@ -5,9 +5,10 @@ use toml::Spanned;
 use super::{Checked, Reader};
 use crate::math::Point;
 use crate::outline::Ring;
+use crate::pipeline::{DeformedCopy, HandleMove};
 use crate::scene::error::SceneProblem;
 use crate::scene::file::{HandleTable, LandmarkTable, PoseTable};
-use crate::scene::settings::{DeformedCopy, HandleMove, ScenePose};
+use crate::scene::settings::{DeformedSource, ScenePose};
 
 impl Reader<'_> {
     /// The copy that a pose with `deform_of` is; `names` are those of all poses.
@@ -16,7 +17,7 @@ impl Reader<'_> {
         written: &PoseTable,
         of: &Spanned<String>,
         names: &[String],
-    ) -> Checked<DeformedCopy> {
+    ) -> Checked<DeformedSource> {
         let (name, start) = (written.name.get_ref(), of.span().start);
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let base = self.pose_index(of, &format!("`deform_of` of pose '{name}'"), &names)?;
@@ -49,10 +50,12 @@ impl Reader<'_> {
             .iter()
             .enumerate()
             .map(|(k, handle)| self.handle(handle, at, k, name));
-        Ok(DeformedCopy {
-            of: base,
+        Ok(DeformedSource {
             line: self.line(at),
-            handles: moves.collect::<Checked<_>>()?,
+            copy: DeformedCopy {
+                of: base,
+                handles: moves.collect::<Checked<_>>()?,
+            },
         })
     }
 

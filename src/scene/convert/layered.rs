@@ -3,10 +3,12 @@
 use toml::{Spanned, Value};
 
 use super::{Checked, Reader};
+use crate::input::Extent;
+use crate::pipeline::{DeformedCopy, Facing};
 use crate::scene::error::SceneProblem;
 use crate::scene::file::{LayerTable, PoseTable, SceneFile};
 use crate::scene::layers::{LayerAnchor, SceneLayer};
-use crate::scene::settings::{DeformedCopy, DrawnSource, Extent, Facing, PoseSource, Scene};
+use crate::scene::settings::{DeformedSource, DrawnSource, PoseSource, Scene};
 
 impl Reader<'_> {
     /// The layers' names, in drawing order from back to front; none in a scene without.
@@ -127,7 +129,7 @@ impl Reader<'_> {
             let names: Vec<String> = scene.names();
             let copy = self.deformed(written, of, &names)?;
             // Whether the original has the layer: copies of copies are no longer than there are poses.
-            let mut original = copy.of;
+            let mut original = copy.copy.of;
             for _ in 0..names.len() {
                 let Some(next) = &file.pose[original].get_ref().deform_of else {
                     break;
@@ -198,13 +200,13 @@ impl Reader<'_> {
     fn handles_of(
         &self,
         written: &PoseTable,
-        copy: DeformedCopy,
+        copy: DeformedSource,
         layer: &str,
         layers: &[String],
-    ) -> Checked<DeformedCopy> {
+    ) -> Checked<DeformedSource> {
         let tables = written.handles.as_ref().map(Spanned::get_ref).into_iter().flatten();
         let mut handles = Vec::new();
-        for (table, handle) in tables.zip(&copy.handles) {
+        for (table, handle) in tables.zip(&copy.copy.handles) {
             let Some(of) = &table.layer else {
                 return Err(self.fail(
                     written.handles.as_ref().map_or(0, |list| list.span().start),
@@ -219,7 +221,13 @@ impl Reader<'_> {
                 handles.push(*handle);
             }
         }
-        Ok(DeformedCopy { handles, ..copy })
+        Ok(DeformedSource {
+            line: copy.line,
+            copy: DeformedCopy {
+                of: copy.copy.of,
+                handles,
+            },
+        })
     }
 
     /// The string that `value` has for a layer: the same for all, or one a layer in a table.

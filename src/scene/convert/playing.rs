@@ -3,10 +3,10 @@
 use toml::Spanned;
 
 use super::{Checked, Reader};
-use crate::scene::animation::{Animation, Key};
+use crate::animation::{Animation, AnimationError, Key};
 use crate::scene::error::SceneProblem;
 use crate::scene::file::AnimationTable;
-use crate::scene::settings::{Background, ScenePose};
+use crate::scene::settings::ScenePose;
 
 /// The largest side of a frame, in pixels.
 const LARGEST_FRAME: i64 = 16_384;
@@ -17,7 +17,7 @@ const LATEST_TIME: f64 = 1e6;
 
 impl Reader<'_> {
     pub(super) fn animation(&self, table: &AnimationTable, poses: &[ScenePose]) -> Checked<Animation> {
-        let mut animation = match &table.keys {
+        let animation = match &table.keys {
             Some(keys) if !keys.get_ref().is_empty() => {
                 let dimension = poses.first().map_or(0, |p| p.at.len());
                 let mut checked: Vec<Key> = Vec::new();
@@ -36,6 +36,7 @@ impl Reader<'_> {
             }
             _ => Animation::visiting(poses.iter().map(|p| p.at.as_slice()), table.looped.unwrap_or(true)),
         };
+        let mut animation = self.checked(animation)?;
         animation.fps = self.frame_rate(&table.fps)?;
         if let Some(size) = &table.size {
             let (start, sides) = (size.span().start, size.get_ref());
@@ -74,6 +75,11 @@ impl Reader<'_> {
         Ok(animation)
     }
 
+    /// An animation whose keys were checked one by one.
+    pub(in crate::scene) fn checked(&self, animation: Result<Animation, AnimationError>) -> Checked<Animation> {
+        animation.map_err(|error| self.fail(self.text.len(), SceneProblem::Format(error.to_string())))
+    }
+
     /// Frames a second.
     pub(in crate::scene) fn frame_rate(&self, fps: &Option<Spanned<f64>>) -> Checked<f64> {
         self.number(
@@ -107,30 +113,5 @@ impl Reader<'_> {
             Some(before) => Err(self.fail(start, SceneProblem::KeyOrder { index, time, before })),
             None => Ok(time),
         }
-    }
-}
-
-impl std::str::FromStr for Background {
-    /// What may be written.
-    type Err = &'static str;
-
-    fn from_str(word: &str) -> Result<Self, Self::Err> {
-        /// What may be written.
-        const ALLOWED: &str = "'transparent', 'white', 'black', '#rrggbb' or '#rrggbbaa'";
-        let word = match word {
-            "transparent" => return Ok(Self::Transparent),
-            "white" => "#ffffff",
-            "black" => "#000000",
-            other => other,
-        };
-        let hex = word.strip_prefix('#').ok_or(ALLOWED)?;
-        if !hex.bytes().all(|digit| digit.is_ascii_hexdigit()) || !matches!(hex.len(), 6 | 8) {
-            return Err(ALLOWED);
-        }
-        let mut colour = [255; 4];
-        for (k, channel) in colour.iter_mut().enumerate().take(hex.len() / 2) {
-            *channel = u8::from_str_radix(&hex[2 * k..2 * k + 2], 16).map_err(|_| ALLOWED)?;
-        }
-        Ok(Self::Colour(colour))
     }
 }

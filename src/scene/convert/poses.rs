@@ -6,9 +6,11 @@ use std::path::PathBuf;
 use toml::{Spanned, Value};
 
 use super::{Checked, Reader};
+use crate::input::Extent;
+use crate::pipeline::Facing;
 use crate::scene::error::SceneProblem;
 use crate::scene::file::PoseTable;
-use crate::scene::settings::{DrawnSource, Extent, Facing, PoseSource, ScenePose};
+use crate::scene::settings::{DrawnSource, PoseSource, ScenePose};
 use crate::scene::source;
 
 /// The most whole turns that can be added to a pose.

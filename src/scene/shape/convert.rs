@@ -11,9 +11,9 @@ use super::settings::{
     PseudoExample, ShapeExample, ShapeFile, ShapeScene, SubdivisionSettings, Subject, SurfacePoints,
 };
 use crate::scene::convert::{Checked, LARGEST_PLACE, Reader, text_of};
-use crate::scene::settings::Radial;
 use crate::scene::source::leaves_folder;
 use crate::scene::{SceneError, SceneProblem};
+use crate::weights::Radial;
 
 /// The most steps of subdivision: each has four times the triangles of the one before.
 const MOST_STEPS: i64 = 5;

@@ -2,7 +2,7 @@
 
 use super::file::AnimationTable;
 use super::settings::ShapeExample;
-use crate::scene::animation::{Animation, Key};
+use crate::animation::{Animation, Key};
 use crate::scene::convert::{Checked, Reader};
 
 impl Reader<'_> {
@@ -14,7 +14,7 @@ impl Reader<'_> {
         examples: &[ShapeExample],
     ) -> Checked<(Animation, Animation)> {
         let fps = self.frame_rate(&table.fps)?;
-        let (mut geometry, mut textures) = match &table.keys {
+        let (geometry, textures) = match &table.keys {
             Some(written) if !written.is_empty() => {
                 let (mut geometry, mut textures): (Vec<Key>, Vec<Key>) = (Vec::new(), Vec::new());
                 for (index, key) in written.iter().enumerate() {
@@ -42,8 +42,10 @@ impl Reader<'_> {
                 (places(|example| &example.at), places(|example| &example.texture_at))
             }
         };
-        geometry.fps = fps;
-        textures.fps = fps;
+        let (mut geometry, mut textures) = (self.checked(geometry)?, self.checked(textures)?);
+        for path in [&mut geometry, &mut textures] {
+            path.fps = fps;
+        }
         Ok((geometry, textures))
     }
 }

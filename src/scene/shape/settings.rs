@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::animation::Animation;
 use crate::math::Point3;
-use crate::scene::{Animation, Radial};
+use crate::weights::Radial;
 
 /// A scene of a shape in space (SBE): example forms, what they are examples of, and how the shape is looked at and played.
 ///

@@ -4,7 +4,8 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::math::Point3;
-use crate::scene::{Radial, SceneError, SceneProblem};
+use crate::scene::{SceneError, SceneProblem};
+use crate::weights::Radial;
 
 const TWO: &str = r#"version = 1
 adjectives = ["bend", "thickness"]

@@ -1,7 +1,7 @@
 //! Scenes with layers.
 
 use super::*;
-use crate::scene::Extent;
+use crate::input::Extent;
 
 /// Two layers, the arm on the body, over four poses: `b` and `c` have one file for both, `c` no arm, `d` is a copy of `b`.
 const LAYERED: &str = r#"
@@ -72,7 +72,7 @@ fn each_layer_is_a_scene_of_its_own() {
     // The copy is one of `b`, which has another index in the layer; the body has no handle and stays.
     let copies: Vec<(usize, usize)> = [&body.scene.poses[3], &arm.scene.poses[2]]
         .map(|pose| match &pose.source {
-            PoseSource::Deformed(copy) => (copy.of, copy.handles.len()),
+            PoseSource::Deformed(copy) => (copy.copy.of, copy.copy.handles.len()),
             _ => panic!("a copy"),
         })
         .to_vec();
@@ -81,12 +81,7 @@ fn each_layer_is_a_scene_of_its_own() {
     let names = |layer: &Scene| -> Vec<String> { layer.landmarks.iter().map(|l| l.name.clone()).collect() };
     assert_eq!(names(&body.scene), ["foot"]);
     assert_eq!(names(&arm.scene), ["shoulder", "elbow"]);
-    let soft = |landmark| {
-        Anchor::Soft(vec![SoftAnchor {
-            landmark,
-            stiffness: 10.0,
-        }])
-    };
+    let soft = |point| Anchor::Soft(vec![SoftAnchor { point, stiffness: 10.0 }]);
     assert_eq!(
         (&body.scene.blend.anchor, &arm.scene.blend.anchor),
         (&soft(0), &soft(1))

@@ -14,7 +14,7 @@ use crate::weights::WeightProvider;
 /// A shape with everything that is computed once. It is immutable and is asked from many threads.
 ///
 /// ```no_run
-/// use inbetween::{pipeline::ShapeModel, scene::ShapeScene};
+/// use inbetween::scene::{ShapeModel, ShapeScene};
 /// use std::path::Path;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {

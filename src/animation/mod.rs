@@ -7,7 +7,9 @@
 //!
 //! The place at a time depends on the keys and the time alone, so every frame can be computed on its own.
 
-use super::settings::Background;
+mod background;
+
+pub use background::Background;
 
 /// A place to be at a time.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,10 +33,45 @@ pub struct Animation {
     route: Route,
 }
 
+/// Why keys are no animation.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AnimationError {
+    /// There is no key.
+    #[error("an animation needs at least one key")]
+    NoKey,
+    /// A number is not finite.
+    #[error("animation key {index} has a time or place that is not finite")]
+    NotFinite {
+        /// Which key, from 0.
+        index: usize,
+    },
+    /// A place of another dimension.
+    #[error("animation key {index} has {found} coordinates, the first has {expected}")]
+    Dimension {
+        /// Which key, from 0.
+        index: usize,
+        /// Its coordinates.
+        found: usize,
+        /// Those of the first.
+        expected: usize,
+    },
+    /// Keys whose times do not increase.
+    #[error("animation key {index} is at time {time}, not after its predecessor at {before}; sort the keys by time")]
+    KeyOrder {
+        /// Which key, from 0.
+        index: usize,
+        /// Its time.
+        time: f64,
+        /// The time before.
+        before: f64,
+    },
+}
+
 /// Where the keys come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Route {
-    /// From the scene file.
+    /// Given as they are.
     Keys,
     /// From the places of the poses; whether as a loop.
     Poses { looped: bool },
@@ -60,13 +97,41 @@ impl Animation {
     /// The time between two poses of the default animation.
     pub const SECONDS_A_POSE: f64 = 1.0;
 
-    /// An animation through `keys`, which are not empty and whose times increase strictly. `None` for the size or rate
-    /// stands for the default.
+    /// An animation through `keys`, which are not empty and whose times increase strictly; rate, size and background are the
+    /// defaults.
     ///
     /// A loop whose last key lies where the first one does ends there; any other loop takes the mean time between keys
     /// to return from the last to the first.
-    #[must_use]
-    pub(super) fn new(mut keys: Vec<Key>, looped: bool) -> Self {
+    ///
+    /// # Errors
+    /// [`AnimationError`] if there is no key, or one is not finite, has another dimension or is not after its predecessor.
+    pub fn new(keys: Vec<Key>, looped: bool) -> Result<Self, AnimationError> {
+        let dimension = keys.first().ok_or(AnimationError::NoKey)?.at.len();
+        let mut before = None;
+        for (index, key) in keys.iter().enumerate() {
+            if !(key.time.is_finite() && key.at.iter().all(|v| v.is_finite())) {
+                return Err(AnimationError::NotFinite { index });
+            }
+            if key.at.len() != dimension {
+                return Err(AnimationError::Dimension {
+                    index,
+                    found: key.at.len(),
+                    expected: dimension,
+                });
+            }
+            if let Some(before) = before.replace(key.time).filter(|before| *before >= key.time) {
+                return Err(AnimationError::KeyOrder {
+                    index,
+                    time: key.time,
+                    before,
+                });
+            }
+        }
+        Ok(Self::of_keys(keys, looped))
+    }
+
+    /// As [`Self::new`] for keys that are known to be fit.
+    fn of_keys(mut keys: Vec<Key>, looped: bool) -> Self {
         let span = match (keys.first(), keys.last()) {
             (Some(first), Some(last)) => last.time - first.time,
             _ => 0.0,
@@ -95,9 +160,11 @@ impl Animation {
         }
     }
 
-    /// A loop that visits `places` in order, [`Self::SECONDS_A_POSE`] apart.
-    #[must_use]
-    pub(super) fn visiting<'a>(places: impl IntoIterator<Item = &'a [f64]>, looped: bool) -> Self {
+    /// An animation that visits the places of the poses in order, [`Self::SECONDS_A_POSE`] apart, as a loop or once.
+    ///
+    /// # Errors
+    /// [`AnimationError`] if there is no place, or one is not finite or has another dimension.
+    pub fn visiting<'a>(places: impl IntoIterator<Item = &'a [f64]>, looped: bool) -> Result<Self, AnimationError> {
         let keys = places
             .into_iter()
             .enumerate()
@@ -106,25 +173,27 @@ impl Animation {
                 at: at.to_vec(),
             })
             .collect();
-        Self {
+        Ok(Self {
             route: Route::Poses { looped },
-            ..Self::new(keys, looped)
-        }
+            ..Self::new(keys, looped)?
+        })
     }
 
-    /// The same with the poses at other places: as it is with keys of its own.
-    #[must_use]
-    pub(super) fn through<'a>(&self, places: impl IntoIterator<Item = &'a [f64]>) -> Self {
+    /// The animation with the poses at other places; one with keys of its own stays as it is.
+    ///
+    /// # Errors
+    /// As [`Self::visiting`].
+    pub fn through<'a>(&self, places: impl IntoIterator<Item = &'a [f64]>) -> Result<Self, AnimationError> {
         let moved = match self.route {
-            Route::Keys => return self.clone(),
-            Route::Poses { looped } => Self::visiting(places, looped),
+            Route::Keys => return Ok(self.clone()),
+            Route::Poses { looped } => Self::visiting(places, looped)?,
         };
-        Self {
+        Ok(Self {
             fps: self.fps,
             size: self.size,
             background: self.background,
             ..moved
-        }
+        })
     }
 
     /// The keys, in order of time. The last key of a loop that repeats its first is not among them.
@@ -158,7 +227,7 @@ impl Animation {
         let steps = (self.duration() * self.fps).round() as usize;
         match self.path.period {
             Some(_) => steps.max(1),
-            None => steps + 1,
+            None => steps.saturating_add(1),
         }
     }
 
@@ -262,7 +331,7 @@ mod tests {
 
     #[test]
     fn two_keys_are_a_straight_even_path() {
-        let path = Animation::new(vec![key(1.0, 0.0, 0.0), key(3.0, 4.0, 2.0)], false);
+        let path = Animation::new(vec![key(1.0, 0.0, 0.0), key(3.0, 4.0, 2.0)], false).expect("keys");
         assert_eq!(path.at(1.5), vec![1.0, 0.5]);
         assert_eq!(path.at(0.0), vec![0.0, 0.0]);
         assert_eq!(path.at(9.0), vec![4.0, 2.0]);
@@ -278,7 +347,7 @@ mod tests {
             key(2.0, 1.0, 0.0),
             key(3.0, 0.0, 1.0),
         ];
-        let path = Animation::new(keys, false);
+        let path = Animation::new(keys, false).expect("keys");
         for k in 0..=10 {
             assert_eq!(path.at(1.0 + f64::from(k) / 10.0), vec![1.0, 0.0]);
         }
@@ -287,20 +356,48 @@ mod tests {
     #[test]
     fn a_loop_that_repeats_its_first_key_ends_there() {
         let keys = vec![key(0.0, 0.0, 0.0), key(1.0, 1.0, 0.0), key(2.5, 0.0, 0.0)];
-        let path = Animation::new(keys, true);
+        let path = Animation::new(keys, true).expect("keys");
         assert_eq!(path.duration(), 2.5);
         assert_eq!(path.frame_count(), 60);
         assert_eq!(path.at(2.5), path.at(0.0));
         let given: Vec<Key> = path.given_keys().cloned().collect();
         assert_eq!((path.keys().len(), given.len()), (2, 3));
-        assert_eq!(Animation::new(given, true), path);
+        assert_eq!(Animation::new(given, true).expect("keys"), path);
     }
 
     #[test]
     fn one_key_is_one_frame() {
-        let path = Animation::new(vec![key(0.0, 0.3, 0.4)], true);
+        let path = Animation::new(vec![key(0.0, 0.3, 0.4)], true).expect("keys");
         assert_eq!((path.frame_count(), path.time_of_frame(0)), (1, 0.0));
         assert_eq!(path.at(7.0), vec![0.3, 0.4]);
+    }
+
+    #[test]
+    fn keys_that_are_no_animation_are_refused() {
+        let refused = |keys: Vec<Key>| Animation::new(keys, true).expect_err("no animation");
+        assert_eq!(refused(vec![]), AnimationError::NoKey);
+        assert_eq!(
+            refused(vec![key(0.0, f64::NAN, 0.0)]),
+            AnimationError::NotFinite { index: 0 }
+        );
+        let (time, before) = (1.0, 1.0);
+        assert_eq!(
+            refused(vec![key(1.0, 0.0, 0.0), key(1.0, 1.0, 0.0)]),
+            AnimationError::KeyOrder { index: 1, time, before }
+        );
+        let line = Key {
+            time: 2.0,
+            at: vec![0.5],
+        };
+        let (found, expected) = (1, 2);
+        assert_eq!(
+            refused(vec![key(1.0, 0.0, 0.0), line]),
+            AnimationError::Dimension {
+                index: 1,
+                found,
+                expected
+            }
+        );
     }
 
     proptest! {
@@ -312,7 +409,7 @@ mod tests {
         ) {
             let mut time = 0.0;
             let keys: Vec<Key> = steps.iter().map(|(dt, x, y)| { time += dt; key(time, *x, *y) }).collect();
-            let path = Animation::new(keys.clone(), looped);
+            let path = Animation::new(keys.clone(), looped).expect("keys");
             for k in &keys {
                 for (a, b) in path.at(k.time).iter().zip(&k.at) {
                     prop_assert!((a - b).abs() < 1e-9);

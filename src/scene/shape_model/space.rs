@@ -1,8 +1,8 @@
 //! The spaces of a shape: one of its forms, and one of its textures (SBE 6.3).
 
 use super::ShapeModelError;
-use crate::scene::{Radial, ShapeScene, Subject};
-use crate::weights::{self, PseudoPose, RbfOptions, RbfWeights, WeightError, WeightProvider};
+use crate::scene::{ShapeScene, Subject};
+use crate::weights::{PseudoPose, RbfOptions, RbfWeights, WeightError, WeightProvider};
 
 /// The weights of a scene's examples over their space, known without any form.
 #[derive(Debug, Clone)]
@@ -76,10 +76,7 @@ pub(super) fn options(scene: &ShapeScene, subject: Subject) -> RbfOptions {
         _ => pseudo.of.is_geometry(),
     });
     RbfOptions {
-        radial: match scene.radial {
-            Radial::BSpline => weights::Radial::BSpline,
-            Radial::ThinPlate => weights::Radial::ThinPlate,
-        },
+        radial: scene.radial,
         pseudo_poses: pseudo_examples
             .map(|pseudo| PseudoPose {
                 from: pseudo.from.clone(),

@@ -1,0 +1,129 @@
+//! What follows from a specification alone.
+
+use std::sync::Arc;
+
+use super::{CharacterSpec, DrawnPose, LayerSpec, PoseShape};
+use crate::blend::Reference;
+
+impl CharacterSpec {
+    /// The places of a layer's poses in the pose space; poses that the space lacks are left out.
+    #[must_use]
+    pub fn poses_of(&self, layer: &LayerSpec) -> Vec<usize> {
+        let place = |name: &String| self.space.poses.iter().position(|own| own == name);
+        layer.poses.iter().filter_map(|pose| place(&pose.name)).collect()
+    }
+
+    /// For each pose of the space the one whose drawing it shows: itself, or the pose that it is a deformed copy of in the end.
+    #[must_use]
+    pub fn originals(&self) -> Vec<usize> {
+        let poses: Vec<Vec<usize>> = self.layers.iter().map(|layer| self.poses_of(layer)).collect();
+        let original = |pose: usize| {
+            let in_layer = |(layer, poses): (&LayerSpec, &Vec<usize>)| {
+                let here = poses.iter().position(|&p| p == pose)?;
+                poses.get(layer.originals()[here]).copied()
+            };
+            self.layers.iter().zip(&poses).find_map(in_layer).unwrap_or(pose)
+        };
+        (0..self.space.poses.len()).map(original).collect()
+    }
+
+    /// For each pose of the space the layers from back to front.
+    #[must_use]
+    pub fn draw_order_of_poses(&self) -> Vec<Vec<usize>> {
+        if self.draw_orders.is_empty() {
+            return vec![(0..self.layers.len()).collect(); self.space.poses.len()];
+        }
+        self.draw_orders.clone()
+    }
+}
+
+impl LayerSpec {
+    /// The names of its poses, in order.
+    #[must_use]
+    pub fn names(&self) -> Vec<String> {
+        self.poses.iter().map(|pose| pose.name.clone()).collect()
+    }
+
+    /// The poses that have a drawing of their own, in order.
+    #[must_use]
+    pub fn drawn_poses(&self) -> Vec<usize> {
+        let is_drawn = |pose: &usize| matches!(self.poses[*pose].shape, PoseShape::Drawn(_));
+        (0..self.poses.len()).filter(is_drawn).collect()
+    }
+
+    /// The drawn poses themselves, in order.
+    pub fn drawn(&self) -> impl Iterator<Item = &DrawnPose> {
+        self.poses.iter().filter_map(|pose| match &pose.shape {
+            PoseShape::Drawn(drawn) => Some(drawn),
+            PoseShape::Deformed(_) => None,
+        })
+    }
+
+    /// The pose whose drawing pose `index` shows, and that drawing: itself, or the one that it is a copy of in the end.
+    ///
+    /// `None` for a pose that does not exist or is a copy of itself, which no valid specification has.
+    #[must_use]
+    pub fn drawing_of(&self, index: usize) -> Option<(usize, &DrawnPose)> {
+        let mut at = index;
+        for _ in 0..=self.poses.len() {
+            match &self.poses.get(at)?.shape {
+                PoseShape::Drawn(drawing) => return Some((at, drawing)),
+                PoseShape::Deformed(copy) => at = copy.of,
+            }
+        }
+        None
+    }
+
+    /// For each pose the one whose drawing it shows.
+    #[must_use]
+    pub fn originals(&self) -> Vec<usize> {
+        let original = |pose: usize| self.drawing_of(pose).map_or(pose, |(original, _)| original);
+        (0..self.poses.len()).map(original).collect()
+    }
+
+    /// For each pose the drawing that it shows, by its place among [`Self::drawn_poses`].
+    #[must_use]
+    pub fn shown_drawings(&self) -> Vec<usize> {
+        let drawn = self.drawn_poses();
+        let drawing = |original: usize| drawn.iter().position(|&pose| pose == original).unwrap_or(0);
+        self.originals().into_iter().map(drawing).collect()
+    }
+
+    /// The layer without its deformed copies: what is matched. Drawings are shared, not copied.
+    #[must_use]
+    pub(in crate::pipeline) fn only_drawn(&self) -> Self {
+        let kept = self.drawn_poses();
+        let place = |index: usize| kept.iter().position(|&k| k == index);
+        let mut layer = self.clone();
+        layer.poses = kept.iter().map(|&k| self.poses[k].clone()).collect();
+        layer.reference = self.reference.and_then(place);
+        if let Reference::Pose(pose) = layer.blend.reference {
+            layer.blend.reference = place(pose).map_or(Reference::Canonical, Reference::Pose);
+        }
+        for (landmark, whole) in layer.landmarks.iter_mut().zip(&self.landmarks) {
+            landmark.at = kept.iter().map(|&k| whole.at[k]).collect();
+        }
+        for (path, whole) in layer.paths.iter_mut().zip(&self.paths) {
+            path.at = kept.iter().map(|&k| whole.at[k].clone()).collect();
+        }
+        layer
+    }
+
+    /// Whether both have the same drawings, used in the same way.
+    #[must_use]
+    pub(in crate::pipeline) fn has_drawings_of(&self, other: &Self) -> bool {
+        self.drawn().eq(other.drawn())
+    }
+}
+
+impl From<DrawnPose> for PoseShape {
+    fn from(drawn: DrawnPose) -> Self {
+        Self::Drawn(drawn)
+    }
+}
+
+impl From<crate::input::Drawing> for DrawnPose {
+    fn from(drawing: crate::input::Drawing) -> Self {
+        Self::new(Arc::new(drawing))
+    }
+}
