@@ -77,7 +77,10 @@ fn read_drawing(scene: &Scene, pose: usize, pixels_per_unit: Option<f64>) -> Res
         open_bitmap(
             &path,
             &BitmapOptions {
-                threshold: scene.input.threshold,
+                figure: said.reading.figure,
+                gap: said.reading.gap,
+                paper: said.reading.paper,
+                threshold: said.reading.threshold,
                 holes,
             },
         )
@@ -105,6 +108,7 @@ pub(super) fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
         mut picture,
         art,
         notes,
+        unit_px,
     } = drawing;
     for row in picture.pixels.chunks_exact_mut(picture.width.max(1)) {
         row.reverse();
@@ -125,6 +129,7 @@ pub(super) fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
         picture,
         art: art.map(|art| art.mirrored(axis)),
         notes,
+        unit_px,
     })
 }
 
@@ -157,6 +162,7 @@ mod tests {
             },
             art: None,
             notes: vec![],
+            unit_px: 1.0,
         };
         let once = mirrored(drawing.clone()).expect("a drawing");
         // The outline is one unit wide, from 1 to 2, and stays there; so does the pixel under it.

@@ -22,8 +22,8 @@ pub use layers::{LayerAnchor, SceneLayer};
 pub use new::{NewPose, scene_text};
 pub use settings::{
     Anchor, ArtChoice, Background, BlendSettings, ColourBlend, DeformedCopy, DrawnSource, Extent, Facing, HandleMove,
-    Holes, InputSettings, Layout, MeshSettings, PoseSource, PoseSpaceSettings, Provider, PseudoPose, Radial, Region,
-    Scene, SceneLandmark, ScenePath, ScenePose, SoftAnchor, WeightRange,
+    Holes, InputSettings, Layout, MeshSettings, PoseSource, PoseSpaceSettings, Provider, PseudoPose, Radial,
+    ReadingSettings, Region, Scene, SceneLandmark, ScenePath, ScenePose, SoftAnchor, WeightRange,
 };
 pub use shape::{
     AxisSettings, JointScaling, JointSettings, JointShift, JointTurn, PseudoExample, ShapeExample, ShapeFile,

@@ -4,6 +4,7 @@ use crate::blend::{FrameGuard, Reference, Stretch};
 use std::path::{Path, PathBuf};
 
 use super::{Animation, SceneLayer};
+use crate::input::{FigureRule, PaperRule};
 use crate::math::Point;
 
 /// A scene: everything the artist says about a character.
@@ -91,15 +92,40 @@ pub enum Holes {
 pub struct InputSettings {
     /// Whether holes count.
     pub holes: Holes,
+    /// How the drawings of poses that do not say it themselves are read.
+    pub reading: ReadingSettings,
+}
+
+/// How a drawing is read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReadingSettings {
+    /// How the figure is told from its sheet.
+    pub figure: FigureRule,
+    /// Widest gap in lines that is closed, as a fraction of the drawing's diagonal.
+    pub gap: f64,
+    /// What becomes of the paper inside a figure of lines.
+    pub paper: PaperRule,
     /// The coverage, between 0 and 1, that counts as inside.
     pub threshold: f64,
 }
 
 impl Default for InputSettings {
-    /// Holes kept, outline at half coverage.
+    /// Holes kept.
     fn default() -> Self {
         Self {
             holes: Holes::Keep,
+            reading: ReadingSettings::default(),
+        }
+    }
+}
+
+impl Default for ReadingSettings {
+    /// The figure by evidence, gaps of a hundredth closed, paper kept, outline at half coverage.
+    fn default() -> Self {
+        Self {
+            figure: FigureRule::Auto,
+            gap: 0.01,
+            paper: PaperRule::Keep,
             threshold: 0.5,
         }
     }
@@ -303,6 +329,8 @@ pub struct DrawnSource {
     pub facing: Facing,
     /// Whether only the element is drawn.
     pub extent: Extent,
+    /// How it is read.
+    pub reading: ReadingSettings,
 }
 
 /// A copy of another pose whose handles are moved as rigidly as possible (NWM 3.2). It has the other's picture, and what

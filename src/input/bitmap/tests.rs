@@ -93,8 +93,10 @@ fn holes_are_kept_pin_holes_and_loose_parts_are_told() {
     let drawing = read(&image);
     assert_eq!(drawing.outline.holes().len(), 1);
     assert_eq!(drawing.notes.len(), 3);
-    assert!(matches!(drawing.notes[0], InputNote::PartLeftOut { place, area } if
-        (place - Point::new(70.0, 10.0)).norm() < 0.1 && (area - 78.5).abs() < 4.0));
+    assert!(
+        matches!(drawing.notes[0], InputNote::PartsLeftOut { count: 1, place, area } if
+        (place - Point::new(70.0, 10.0)).norm() < 0.1 && (area - 78.5).abs() < 4.0)
+    );
     assert!(matches!(drawing.notes[1], InputNote::SpecksLeftOut { count: 1, .. }));
     assert!(matches!(drawing.notes[2], InputNote::PinHolesClosed { count: 1, .. }));
     assert_eq!(drawing.picture.pixels[30 * 80 + 22], [0; 4]);

@@ -117,8 +117,10 @@ fn overlapping_pieces_are_united_and_loose_ones_reported() {
     // Two discs of radius r at distance r: the lens is (2 pi / 3 - sqrt(3) / 2) r^2.
     let lens = (2.0 * std::f64::consts::FRAC_PI_3 - 3.0_f64.sqrt() / 2.0) * 400.0;
     close(drawing.outline.area(), 800.0 * std::f64::consts::PI - lens, 2.0);
-    assert!(matches!(drawing.notes[..], [InputNote::PartLeftOut { place, area }]
-        if (place - Point::new(85.0, 85.0)).norm() < 1e-6 && (area - 100.0).abs() < 1e-6));
+    assert!(
+        matches!(drawing.notes[..], [InputNote::PartsLeftOut { count: 1, place, area }]
+        if (place - Point::new(85.0, 85.0)).norm() < 1e-6 && (area - 100.0).abs() < 1e-6)
+    );
 }
 
 #[test]
