@@ -19,8 +19,8 @@ const STAGES: [(&str, &[&str]); 11] = [
     ("render", &["input", "matching", "pose"]),
     // The forms' weights are those of the radial basis; textures are blended as frames are.
     ("shape3d", &["render", "weights"]),
-    // The scene file names the blend's own options.
-    ("scene", &["blend"]),
+    // The scene file names the blend's own options, and the input's.
+    ("scene", &["blend", "input"]),
     // The runtime file holds poses and the blend's own options.
     ("export", &["blend", "pose", "render", "shape3d"]),
 ];

@@ -93,7 +93,7 @@ pub(super) fn outer_border(is_drawn: &[bool], width: usize) -> Vec<usize> {
         .collect();
     let longest = (0..stretches.len()).max_by_key(|&k| (stretches[k].len(), usize::MAX - k));
     match longest {
-        Some(longest) if stretches.len() % 2 == 0 => {
+        Some(longest) if stretches.len().is_multiple_of(2) => {
             let same_side = |(k, _): &(usize, &&[usize])| k.abs_diff(longest) % 2 == 0;
             stretches
                 .iter()

@@ -379,7 +379,7 @@ struct Enclosed {
     /// With bridges drawn.
     coverage: Vec<f32>,
     outside: Vec<bool>,
-    /// Share of what is not outside that is not drawn.
+    /// Share of what is not outside, or would not be if all gaps were bridged, that is not drawn.
     bare_share: f64,
     bridged: Vec<Bridge>,
     /// A gap too wide to be bridged, in pixels, and as a fraction of the diagonal.
@@ -423,20 +423,23 @@ fn enclose(coverage: &[f32], drawn: &[bool], width: usize, ink: &Ink, options: &
     let (bridged, drawn_over, outside) = with(options.gap);
     let inside = outside.iter().filter(|outside| !**outside).count();
     let bare = (0..outside.len()).filter(|&at| !outside[at] && !drawn[at]).count();
-    let mut open = None;
+    let (mut open, mut bare_share) = (None, bare as f64 / inside.max(1) as f64);
     let is_thin = is_line_drawing(ink.line_width, ink.diagonal, 1.0);
     if is_thin {
         let (wide, _, outside) = with(NAMED_GAP * options.gap);
         let more = outside.iter().filter(|outside| !**outside).count();
         if more as f64 > NAMED_GROWTH * inside as f64 {
             let widest = wide.into_iter().max_by(|a, b| a.length().total_cmp(&b.length()));
+            let bare = (0..outside.len()).filter(|&at| !outside[at] && !drawn[at]).count();
+            // A line drawing whose outline is open is one nevertheless.
+            bare_share = bare_share.max(bare as f64 / more.max(1) as f64);
             open = widest.map(|bridge| (bridge, f64::from(bridge.length()) / ink.diagonal));
         }
     }
     Enclosed {
         coverage: drawn_over,
         outside,
-        bare_share: bare as f64 / inside.max(1) as f64,
+        bare_share,
         bridged,
         open,
     }
@@ -597,3 +600,6 @@ fn kept(coverage: &[f32], outside: &[bool], width: usize, radius: usize) -> Vec<
     }
     kept
 }
+
+#[cfg(test)]
+mod tests;

@@ -107,7 +107,7 @@ pub fn read_svg(bytes: &[u8], options: &SvgOptions) -> Result<Drawing, InputErro
     let text = svg_text::decode(bytes).map_err(|reason| not_svg(&reason))?;
     let (text, missing) = svg_text::with_variables(text);
     let mut drawing = Source::new(&text)?.read(options)?;
-    if options.element.is_none() && fills_page(&drawing) {
+    if options.element.is_none() && page_use(&drawing) == PageUse::Whole {
         drawing.drawing.notes.push(InputNote::FillsCanvas);
         if let Some(figure) = without_background(&text, options)? {
             drawing = figure;
@@ -127,34 +127,58 @@ struct OnPage {
     page: kurbo::Rect,
 }
 
-/// Whether the outline covers all of the page, as a sheet does.
-fn fills_page(on_page: &OnPage) -> bool {
-    let page = on_page.page;
-    let slack = PAGE_SLACK * (page.width() + page.height());
-    point::bounding_box(on_page.drawing.outline.outer().points()).is_some_and(|(low, high)| {
-        low.x <= page.x0 + slack && low.y <= page.y0 + slack && high.x >= page.x1 - slack && high.y >= page.y1 - slack
-    }) && on_page.drawing.outline.area() >= LEAST_SHEET * page.area()
+/// How much of the page an outline takes up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum PageUse {
+    /// It does not reach from one border to the opposite one.
+    Within,
+    /// It does, as ground and sky do.
+    Across,
+    /// It covers the page, as a sheet does.
+    Whole,
 }
 
-/// The drawing without what is drawn first, as far as that covers the page; `None` if nothing smaller than the page is left.
+fn page_use(on_page: &OnPage) -> PageUse {
+    let page = on_page.page;
+    let slack = PAGE_SLACK * (page.width() + page.height());
+    let Some((low, high)) = point::bounding_box(on_page.drawing.outline.outer().points()) else {
+        return PageUse::Within;
+    };
+    let is_wide = low.x <= page.x0 + slack && high.x >= page.x1 - slack;
+    let is_high = low.y <= page.y0 + slack && high.y >= page.y1 - slack;
+    if is_wide && is_high && on_page.drawing.outline.area() >= LEAST_SHEET * page.area() {
+        PageUse::Whole
+    } else if is_wide || is_high {
+        PageUse::Across
+    } else {
+        PageUse::Within
+    }
+}
+
+/// The drawing without what is drawn first, as far as that covers the page; `None` if nothing smaller than the page is left. If what is
+/// left then reaches from border to border, more is left out as far as something is left that does not: sky, then ground.
 fn without_background(text: &str, options: &SvgOptions) -> Result<Option<OnPage>, InputError> {
     let mut text = text.to_owned();
+    let mut best: Option<(PageUse, OnPage)> = None;
     for _ in 0..MOST_BACKGROUND {
         let Some(first) = svg_text::first_drawn(&parse(&text)?) else {
-            return Ok(None);
+            break;
         };
         text = svg_text::blanked(&text, first);
-        match Source::new(&text)?.read(options) {
-            Ok(figure) if fills_page(&figure) => {}
-            Ok(mut figure) => {
-                figure.drawing.notes.push(InputNote::BackgroundLeftOut);
-                return Ok(Some(figure));
-            }
+        let Ok(mut figure) = Source::new(&text)?.read(options) else {
             // Nothing but background.
-            Err(_) => return Ok(None),
+            break;
+        };
+        let usage = page_use(&figure);
+        if usage < best.as_ref().map_or(PageUse::Whole, |(least, _)| *least) {
+            figure.drawing.notes.push(InputNote::BackgroundLeftOut);
+            best = Some((usage, figure));
+        }
+        if usage == PageUse::Within {
+            break;
         }
     }
-    Ok(None)
+    Ok(best.map(|(_, figure)| figure))
 }
 
 fn parse(text: &str) -> Result<roxmltree::Document<'_>, InputError> {
