@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::PipelineError;
 use crate::input::{BitmapOptions, Drawing, Extent, HoleRule, InputError, SvgOptions, open_bitmap, open_svg};
+use crate::matching::shared_holes;
 use crate::math::Point;
 use crate::math::point::bounding_box;
 use crate::outline::{Outline, OutlineError, Ring};
@@ -22,7 +23,30 @@ pub fn read_drawings(scene: &Scene) -> Result<Vec<Drawing>, PipelineError> {
         .into_par_iter()
         .map(|pose| read_drawing(scene, pose, None))
         .collect();
-    read.into_iter().collect()
+    let mut drawings: Vec<Drawing> = read.into_iter().collect::<Result<_, _>>()?;
+    if scene.input.holes == Holes::Match {
+        cover_unshared_holes(&mut drawings);
+    }
+    Ok(drawings)
+}
+
+/// Makes openings of the holes that not all drawings have: the mesh covers them, and the texture's alpha opens and closes them. The others
+/// come to stand in one order.
+fn cover_unshared_holes(drawings: &mut [Drawing]) {
+    if drawings.iter().all(|drawing| drawing.outline.holes().is_empty()) {
+        return;
+    }
+    let outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
+    let shared = shared_holes(&outlines);
+    let is_every_hole = |outline: &Outline| outline.holes().len() == shared.len();
+    if outlines.iter().all(is_every_hole) {
+        // The order is that of the matching.
+        return;
+    }
+    for (pose, drawing) in drawings.iter_mut().enumerate() {
+        let kept: Vec<usize> = shared.iter().map(|of_poses| of_poses[pose]).collect();
+        drawing.outline = drawing.outline.with_holes_in_order(&kept);
+    }
 }
 
 /// Draws vector drawings again whose pictures are coarser than frames at `frame_scale` pixels a unit.
@@ -57,7 +81,7 @@ fn read_drawing(scene: &Scene, pose: usize, pixels_per_unit: Option<f64>) -> Res
         return Err(PipelineError::stage(&scene.names(), Some(pose), "it has no drawing"));
     };
     let holes = match scene.input.holes {
-        Holes::Keep => HoleRule::Keep,
+        Holes::Match | Holes::Keep => HoleRule::Keep,
         Holes::Fill => HoleRule::Fill,
     };
     let read = if is_svg(&path) {
@@ -124,8 +148,14 @@ pub(super) fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
         .map(reflect)
         .collect::<Result<_, _>>()
         .map_err(degenerate)?;
+    let openings = outline
+        .openings()
+        .iter()
+        .map(reflect)
+        .collect::<Result<_, _>>()
+        .map_err(degenerate)?;
     Ok(Drawing {
-        outline: Outline::new(outer, holes)?,
+        outline: Outline::new(outer, holes)?.with_openings(openings),
         picture,
         art: art.map(|art| art.mirrored(axis)),
         notes,

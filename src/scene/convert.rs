@@ -283,8 +283,8 @@ impl Reader<'_> {
             holes: self.choice(
                 &written.input.holes,
                 "[input] holes",
-                &[("keep", Holes::Keep), ("fill", Holes::Fill)],
-                "'keep' or 'fill'",
+                &[("match", Holes::Match), ("keep", Holes::Keep), ("fill", Holes::Fill)],
+                "'match', 'keep' or 'fill'",
             )?,
             reading: self.reading(
                 &WrittenReading {

@@ -80,8 +80,10 @@ pub enum Extent {
 /// Whether holes of the drawings are holes of the shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Holes {
-    /// They are, and correspond between the poses.
+    /// Those that all poses have are, and correspond. The others open and close in the texture.
     #[default]
+    Match,
+    /// They are, and correspond between the poses, which must have equally many.
     Keep,
     /// The shape is filled; what is transparent in the drawing stays transparent in its texture.
     Fill,
@@ -110,10 +112,10 @@ pub struct ReadingSettings {
 }
 
 impl Default for InputSettings {
-    /// Holes kept.
+    /// Holes matched.
     fn default() -> Self {
         Self {
-            holes: Holes::Keep,
+            holes: Holes::Match,
             reading: ReadingSettings::default(),
         }
     }
