@@ -227,7 +227,7 @@ fn without_background(image: &RgbaImage, found: &Found, filled: Option<&Outline>
                     Some((paper, kept)) => {
                         let index = y * width + x;
                         let is_filled = covered_by_fill.as_ref().is_some_and(|inside| inside[index]);
-                        let share = if is_filled { 1.0 } else { kept[index] };
+                        let share = if is_filled { 1.0 } else { f32::from(kept[index]) / 255.0 };
                         if share <= 0.0 {
                             continue;
                         }

@@ -25,6 +25,24 @@ pub(super) fn depths(mask: &[bool], width: usize, most: usize) -> Vec<usize> {
     depths
 }
 
+/// The pixels around one.
+pub(super) fn neighbours(at: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
+    let (x, y, height) = (at % width, at / width, count / width);
+    let rows = y.saturating_sub(1)..(y + 2).min(height);
+    rows.flat_map(move |row| (x.saturating_sub(1)..(x + 2).min(width)).map(move |column| row * width + column))
+        .filter(move |&other| other != at)
+}
+
+/// Whether one of the pixels around one is in a mask.
+pub(super) fn touches(mask: &[bool], at: usize, width: usize) -> bool {
+    let column = at % width;
+    if column == 0 || column + 1 == width || at < width || at + width >= mask.len() {
+        return neighbours(at, width, mask.len()).any(|other| mask[other]);
+    }
+    let row = |middle: usize| mask[middle - 1] | mask[middle] | mask[middle + 1];
+    row(at - width) | row(at + width) | mask[at - 1] | mask[at + 1]
+}
+
 /// What is reached from `seeds` over pixels that are not drawn, from side to side. Cost O(#pixels).
 pub(super) fn flood(is_drawn: &[bool], width: usize, seeds: &[usize]) -> Vec<bool> {
     let mut reached = vec![false; is_drawn.len()];

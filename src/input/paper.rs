@@ -13,6 +13,8 @@
 //!
 //! A border whose residuals are not small is no plain background: refused. Cost O(#pixels).
 
+use std::collections::BTreeMap;
+
 use image::RgbaImage;
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
@@ -43,6 +45,10 @@ const STEP: f32 = 1.0 / 255.0;
 const FOLLOWED: f64 = 0.03;
 /// Share of the neighbourhood that has to be background for what the polynomial leaves there to count in full.
 const LEAST_SEEN: f32 = 0.05;
+/// Side of the places whose means are compared, in pixels of the field.
+const PLACE_SIDE: usize = 32;
+/// Deviations of such means within which a region shows the background.
+const UNEVEN: f32 = 3.0;
 /// How often the field is made better.
 const ROUNDS: usize = 3;
 /// From a median absolute residual to the standard deviation of Gaussian noise.
@@ -63,6 +69,10 @@ pub(super) struct Paper {
     /// Rows of the field.
     height: usize,
     field: Vec<Colour>,
+    /// The field as it is along the border, continued: it knows nothing of what is seen farther inside.
+    polynomial: Polynomial,
+    /// How far the background of whole places is from that.
+    unevenness: f32,
     /// The standard deviation of full-size pixels from the field, in the noisiest channel; at least that of rounding.
     pub(super) noise: f32,
 }
@@ -125,13 +135,39 @@ impl Small {
         near.into_iter().step_by(stride).collect()
     }
 
-    /// The monomials of a pixel's place, in units in which the picture is two long.
     fn monomials(&self, pixel: usize) -> [f64; 6] {
-        let longer = self.width.max(self.height) as f64;
-        let x = 2.0 * (pixel % self.width) as f64 / longer - 1.0;
-        let y = 2.0 * (pixel / self.width) as f64 / longer - 1.0;
-        [1.0, x, y, x * x, x * y, y * y]
+        monomials(self.width, self.height, pixel)
     }
+}
+
+/// The monomials of a pixel's place, in units in which the picture is two long.
+fn monomials(width: usize, height: usize, pixel: usize) -> [f64; 6] {
+    let longer = width.max(height) as f64;
+    let x = 2.0 * (pixel % width) as f64 / longer - 1.0;
+    let y = 2.0 * (pixel / width) as f64 / longer - 1.0;
+    [1.0, x, y, x * x, x * y, y * y]
+}
+
+fn polynomial_at(polynomial: &Polynomial, monomials: [f64; 6]) -> Colour {
+    polynomial.map(|terms| terms.iter().zip(monomials).map(|(a, b)| a * b).sum::<f64>() as f32)
+}
+
+/// The deviation of the means of small places in the band from the polynomial.
+fn unevenness(small: &Small, polynomial: &Polynomial, band: &[usize], reach: f32) -> f32 {
+    let mut places: BTreeMap<(usize, usize), ([f32; 3], f32)> = BTreeMap::new();
+    for &pixel in band {
+        let own = residual(small, polynomial, pixel);
+        if largest(own) <= reach {
+            let place = (pixel % small.width / PLACE_SIDE, pixel / small.width / PLACE_SIDE);
+            let (sum, count) = places.entry(place).or_default();
+            for (total, value) in sum.iter_mut().zip(own) {
+                *total += value;
+            }
+            *count += 1.0;
+        }
+    }
+    let mut means: Vec<f32> = places.values().map(|(sum, count)| largest(sum.map(|total| total / count))).collect();
+    (DEVIATION_OF_MEDIAN * median(&mut means)).max(0.5 * STEP)
 }
 
 impl Paper {
@@ -162,6 +198,8 @@ impl Paper {
             width: small.width,
             height: small.height,
             field: follow(&small, &polynomial, deviation),
+            polynomial,
+            unevenness: unevenness(&small, &polynomial, &band, REACH * deviation),
             noise: deviation,
         };
         paper.noise = paper.measure_noise(image, region);
@@ -188,6 +226,23 @@ impl Paper {
             field(right, bottom),
         );
         std::array::from_fn(|k| (1.0 - v) * ((1.0 - u) * a[k] + u * b[k]) + v * ((1.0 - u) * c[k] + u * d[k]))
+    }
+
+    /// Whether the mean colour of a region of full-size pixels is that of the background along the border. Grain averages out in large
+    /// regions, so that whites are told apart that single pixels do not tell.
+    pub(super) fn is_seen_in(&self, image: &RgbaImage, region: &[u32]) -> bool {
+        let width = image.width() as usize;
+        let mut sum = [0.0_f64; 3];
+        for &at in region {
+            let at = at as usize;
+            let place = (at / width / self.scale) * self.width + at % width / self.scale;
+            let expected = polynomial_at(&self.polynomial, monomials(self.width, self.height, place));
+            for ((total, channel), expected) in sum.iter_mut().zip(&image.as_raw()[4 * at..]).zip(expected) {
+                *total += f64::from(f32::from(*channel) * STEP - expected);
+            }
+        }
+        let mean = sum.map(|total| (total / region.len().max(1) as f64) as f32);
+        largest(mean) <= UNEVEN * self.unevenness
     }
 
     /// How light it is on average, from 0 to 1.
@@ -383,8 +438,7 @@ fn running_mean(line: &mut [[f32; 4]], radius: usize, share: f32) {
 }
 
 fn evaluate(small: &Small, polynomial: &Polynomial, pixel: usize) -> Colour {
-    let monomials = small.monomials(pixel);
-    polynomial.map(|terms| terms.iter().zip(monomials).map(|(a, b)| a * b).sum::<f64>() as f32)
+    polynomial_at(polynomial, small.monomials(pixel))
 }
 
 fn residual(small: &Small, polynomial: &Polynomial, pixel: usize) -> Colour {
