@@ -48,7 +48,8 @@ pub use reach::{Reach, ReachOptions, ShapePoint, reach, reach_landmarks, reach_n
 pub use report::{MappingReport, Stage};
 pub use spec::{
     ArtChoice, Attachment, CharacterSpec, DeformedCopy, DrawnPose, Facing, HandleMove, LandmarkSpec, LayerSpec,
-    MeshOptions, PathSpec, Places, PoseShape, PoseSpec, SpaceSpec, SpecError, SvgSource, TextureSpec, WeightOptions,
+    MeshOptions, PathSpec, Places, PoseShape, PoseSpec, SpaceSpec, SpecError, SvgSource, TextureSpec, UnsharedHoles,
+    WeightOptions,
 };
 pub use triangulation::{Refinement, triangulate_polygons};
 pub use weighting::{EditableWeights, checked_weights, editable_weights};

@@ -212,7 +212,7 @@ fn different_numbers_of_holes() {
         move |x, y| ink(inside(x, y, 4, 36) && !inside(x, y, 14, 26)),
     );
     workshop
-        .scene("[[pose]]\nname = \"disc\"\nsource = \"disc.png\"\n[[pose]]\nname = \"ring\"\nsource = \"ring.png\"\n");
+        .scene("[input]\nholes = \"keep\"\n[[pose]]\nname = \"disc\"\nsource = \"disc.png\"\n[[pose]]\nname = \"ring\"\nsource = \"ring.png\"\n");
     refused(
         &workshop,
         &["scene.toml", "'ring'", "1 hole", "'disc'", "holes = \"fill\""],

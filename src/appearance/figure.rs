@@ -29,6 +29,10 @@ const FULL_COVERAGE: f32 = 1.0 / 3.0;
 const SEEN_DIFFERENCE: f32 = 0.05;
 const DRAWN_SHARE: f32 = 0.002;
 
+/// Blur, in working pixels, and the coverage under it that is only found some three of them away from the edge.
+const EDGE_BLUR_PX: f32 = 1.5;
+const INSIDE_COVERAGE: f32 = 0.985;
+
 /// A drawing's figure in working pixels.
 #[derive(Debug, Clone)]
 pub struct Appearance {
@@ -121,7 +125,9 @@ impl Appearance {
     /// Whether anything is drawn inside the figure: whether colours differ from their mean by more than an eye would pass over.
     #[must_use]
     pub fn is_drawn(&self) -> bool {
-        let inside = || self.base.pixels.iter().filter(|pixel| pixel[4] >= 1.0);
+        // Far enough from the edge that what is behind the figure does not shine through.
+        let blurred = self.base.gaussian(EDGE_BLUR_PX);
+        let inside = || blurred.pixels.iter().filter(|pixel| pixel[4] >= INSIDE_COVERAGE);
         let count = inside().count().max(1) as f32;
         let mut mean = [0.0; 3];
         for pixel in inside() {

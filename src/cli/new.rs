@@ -15,7 +15,7 @@ const SUFFIXES: [&str; 7] = ["png", "jpg", "jpeg", "webp", "gif", "bmp", "svg"];
 /// Write a scene file for some drawings
 ///
 /// Writes DIR/scene.toml with one pose a drawing, named after its file. The drawings are mapped onto one another to lay the poses
-/// out: those that are alike come near one another. If they cannot be mapped, the poses lie evenly on a circle and
+/// out: those that are alike come near one another. They are taken in the order of the numbers in their names. If they cannot be mapped, the poses lie evenly on a circle and
 /// a note says why. Drawings that are not in DIR are copied into it, so that the folder is complete. An existing scene
 /// file is never overwritten.
 #[derive(clap::Args)]
@@ -76,7 +76,9 @@ fn plan(arguments: &Arguments) -> anyhow::Result<(Vec<NewPose>, Vec<Copy>)> {
     let folder = arguments.dir.canonicalize().ok();
     let mut poses: Vec<NewPose> = Vec::new();
     let mut copies: Vec<Copy> = Vec::new();
-    for path in &arguments.poses {
+    let mut paths: Vec<&PathBuf> = arguments.poses.iter().collect();
+    paths.sort_by_cached_key(|path| natural_key(path));
+    for path in paths {
         let suffix = path
             .extension()
             .map(|s| s.to_string_lossy().to_lowercase())
@@ -146,6 +148,37 @@ fn write(copies: &[Copy], scene_file: &Path, poses: &mut [NewPose], verbosity: V
     Ok(PendingFile::write_whole(scene_file, scene_text(poses).as_bytes())?)
 }
 
+/// A piece of a file's name by which names are sorted: numbers as numbers, so that walk2 comes before walk10.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum NamePiece {
+    /// A number, by its digits without leading zeros: longer ones are larger.
+    Number(usize, String),
+    /// Letters, capital or not.
+    Word(String),
+}
+
+/// By what drawings are sorted: the pieces of their file's name, then all of the path, so that no two are alike.
+fn natural_key(path: &Path) -> (Vec<NamePiece>, PathBuf) {
+    let stem = path
+        .file_stem()
+        .map(|stem| stem.to_string_lossy().to_lowercase())
+        .unwrap_or_default();
+    let letters: Vec<char> = stem.chars().collect();
+    let pieces = letters
+        .chunk_by(|a, b| a.is_ascii_digit() == b.is_ascii_digit())
+        .map(|piece| {
+            let word: String = piece.iter().collect();
+            if word.starts_with(|c: char| c.is_ascii_digit()) {
+                let digits = word.trim_start_matches('0').to_owned();
+                NamePiece::Number(digits.len(), digits)
+            } else {
+                NamePiece::Word(word)
+            }
+        })
+        .collect();
+    (pieces, path.to_owned())
+}
+
 /// Places by how far the drawings are from one another.
 fn places(scene_file: &Path, poses: &[NewPose]) -> Result<Vec<[f64; 2]>, SceneBuildError> {
     let scene = Scene::parse(&scene_text(poses), scene_file)?.with_automatic_places()?;
@@ -170,4 +203,35 @@ fn file_name(path: &Path) -> anyhow::Result<String> {
 fn portable(path: &Path) -> String {
     let words: Vec<_> = path.components().map(|c| c.as_os_str().to_string_lossy()).collect();
     words.join("/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_sorted_by_their_numbers() {
+        let shell = [
+            "walk1.png",
+            "walk10.png",
+            "walk2.png",
+            "Walk03.png",
+            "b/walk2.svg",
+            "idle.png",
+        ];
+        let mut paths: Vec<PathBuf> = shell.iter().map(PathBuf::from).collect();
+        paths.sort_by_cached_key(|path| natural_key(path));
+        let sorted: Vec<&str> = paths.iter().filter_map(|path| path.to_str()).collect();
+        assert_eq!(
+            sorted,
+            [
+                "idle.png",
+                "walk1.png",
+                "b/walk2.svg",
+                "walk2.png",
+                "Walk03.png",
+                "walk10.png"
+            ]
+        );
+    }
 }

@@ -15,18 +15,59 @@ pub struct Drawing {
     pub art: Option<Art>,
     /// What was left out, for the artist to know.
     pub notes: Vec<InputNote>,
+    /// How many pixels of the page a source unit is: 1 for a bitmap, 3.78 for an SVG file in millimetres.
+    pub unit_px: f64,
 }
 
 /// Something in a drawing that its outline does not show.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum InputNote {
-    /// A part that is not connected to the largest one; the outline goes without it.
-    PartLeftOut {
-        /// Its centroid, in source units.
+    /// The figure is what differs from the background.
+    FigurePainted {
+        /// How many places inside look like the background and belong to the figure nevertheless.
+        enclosed: usize,
+    },
+    /// The figure is what lines enclose.
+    FigureOfLines {
+        /// How many gaps in them were closed.
+        bridged: usize,
+    },
+    /// A line has a gap that is too wide to be closed.
+    LineOpen {
+        /// Its middle, in source units.
         place: Point,
-        /// Its area, in source units squared.
+        /// How wide it is, in source units.
+        width: f64,
+        /// The same, as a fraction of the drawing's diagonal.
+        gap: f64,
+    },
+    /// What was taken for the sheet lies on something else, as in a photograph; the figure is what is drawn on it.
+    PageTaken,
+    /// The figure touches all four borders.
+    FillsCanvas,
+    /// What covers the page behind an SVG drawing.
+    BackgroundLeftOut,
+    /// A shadow or glow outside of the outline.
+    SoftEdgeCut,
+    /// Variables of an SVG file that nothing gives a value.
+    VariablesUnknown {
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// Later pictures of an animated file.
+    FramesLeftOut {
+        /// How many, at least.
+        count: usize,
+    },
+    /// Parts that are not connected to the largest one; the outline goes without them.
+    PartsLeftOut {
+        /// How many.
+        count: usize,
+        /// The area of all together, in source units squared.
         area: f64,
+        /// The centroid of the largest, in source units.
+        place: Point,
     },
     /// Several parts too small to be named one by one.
     SpecksLeftOut {
@@ -69,18 +110,80 @@ pub enum InputNote {
 impl std::fmt::Display for InputNote {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::PartLeftOut { place, area } => write!(
+            Self::FigurePainted { enclosed: 0 } => {
+                f.write_str("the figure is what differs from the background, which is taken out")
+            }
+            Self::FigurePainted { enclosed } => write!(
+                f,
+                "the figure is what differs from the background, which is taken out around it; {} inside {} like the background \
+                 and {} kept",
+                counted(*enclosed, "place"),
+                if *enclosed == 1 { "looks" } else { "look" },
+                if *enclosed == 1 { "is" } else { "are" },
+            ),
+            Self::FigureOfLines { bridged: 0 } => f.write_str("the figure is what the lines enclose, with its inside"),
+            Self::FigureOfLines { bridged } => write!(
+                f,
+                "the figure is what the lines enclose, with its inside; {} in the lines {} closed",
+                counted(*bridged, "gap"),
+                if *bridged == 1 { "is" } else { "are" },
+            ),
+            Self::LineOpen { place, width, gap } => write!(
+                f,
+                "the line is open near ({:.0}, {:.0}), by {width:.0} pixels: close it there, or set `gap = {:.3}` under [input]",
+                place.x,
+                place.y,
+                // A little more than it takes.
+                gap * 1.1 + 0.001
+            ),
+            Self::PageTaken => f.write_str("the drawing lies on a sheet, which lies on something else: the figure is looked for on the sheet"),
+            Self::FillsCanvas => f.write_str(
+                "the figure touches all four borders of the picture; if that is its background, cut the figure out or leave a margin of \
+                 plain background around it",
+            ),
+            Self::BackgroundLeftOut => f.write_str("a background that covers the page is left out"),
+            Self::SoftEdgeCut => f.write_str(
+                "a soft shadow or glow around the figure is cut off at its outline; draw it as a layer of its own if it is to be seen",
+            ),
+            Self::VariablesUnknown { names } => write!(
+                f,
+                "{} has no value, and nothing is drawn with it; define it, or write the colour itself",
+                names.iter().map(|name| format!("var({name})")).collect::<Vec<_>>().join(", ")
+            ),
+            Self::FramesLeftOut { count } => write!(
+                f,
+                "the file is animated: only its first frame is used, {count} other frames or more are left out; save each frame as a \
+                 file of its own"
+            ),
+            Self::PartsLeftOut { count: 1, area, place } => write!(
                 f,
                 "a loose part of area {area:.0} near ({:.0}, {:.0}) is left out; join it to the body or give it its own layer",
                 place.x, place.y
             ),
-            Self::SpecksLeftOut { count, area } => {
-                write!(f, "{count} specks with an area of {area:.0} together are left out")
-            }
-            Self::PinHolesClosed { count, area } => {
-                write!(f, "{count} pin-holes with an area of {area:.0} together are closed")
-            }
-            Self::HolesFilled { count } => write!(f, "{count} holes are filled, as asked"),
+            Self::PartsLeftOut { count, area, place } => write!(
+                f,
+                "{count} loose parts with an area of {area:.0} together are left out, the largest near ({:.0}, {:.0}); join them to the \
+                 body or give them their own layers",
+                place.x, place.y
+            ),
+            Self::SpecksLeftOut { count, area } => write!(
+                f,
+                "{} with an area of {area:.0} together {} left out",
+                counted(*count, "speck"),
+                if *count == 1 { "is" } else { "are" }
+            ),
+            Self::PinHolesClosed { count, area } => write!(
+                f,
+                "{} with an area of {area:.0} together {} closed",
+                counted(*count, "pin-hole"),
+                if *count == 1 { "is" } else { "are" }
+            ),
+            Self::HolesFilled { count } => write!(
+                f,
+                "{} {} filled, as asked",
+                counted(*count, "hole"),
+                if *count == 1 { "is" } else { "are" }
+            ),
             Self::NotDrawn { what, count } => {
                 write!(
                     f,
@@ -97,4 +200,9 @@ impl std::fmt::Display for InputNote {
             ),
         }
     }
+}
+
+/// "1 gap", "2 gaps".
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }

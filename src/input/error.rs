@@ -66,10 +66,28 @@ pub enum InputError {
         /// The value given.
         threshold: f64,
     },
+    /// The gap is no fraction of the diagonal.
+    #[error("the gap is {gap}, but a gap that is closed is a fraction of the diagonal between 0 and 0.2")]
+    BadGap {
+        /// The value given.
+        gap: f64,
+    },
+    /// Alpha was asked to tell the figure, but there is none.
+    #[error("`figure = \"alpha\"`, but all pixels are equally opaque; cut the figure out, or set `figure = \"auto\"`")]
+    NoAlpha,
+    /// Neither alpha nor a plain background tells the figure.
+    #[error(
+        "the figure cannot be told from its background: it is not cut out, and the background along the border is not plain (a \
+         painted checkerboard is no transparency); cut it out and save it with transparency, or draw it on plain paper"
+    )]
+    BackgroundNotPlain,
+    /// The file ends before the picture does.
+    #[error("the image is cut off: the file ends before the picture does; copy or export it again")]
+    CutOff,
     /// No pixel is covered enough.
     #[error(
         "there is no drawing in the {width} x {height} image: no pixel {}; give it a transparent or plain background",
-        if *by_alpha { "is opaque enough" } else { "differs from the border's colour" }
+        if *by_alpha { "is opaque enough" } else { "differs from the background" }
     )]
     NothingDrawn {
         /// Columns.
@@ -124,6 +142,14 @@ pub enum InputError {
         /// The first ids of the file.
         known: Vec<String>,
     },
+    /// An SVG file of nothing but text.
+    #[error("the drawing is all text, which is not drawn; convert the text to paths (outlines) and save it again")]
+    OnlyText,
+    /// An SVG file of nothing but embedded pictures.
+    #[error(
+        "the drawing is an embedded picture, which is not drawn from an SVG file; export the picture as PNG and use that"
+    )]
+    OnlyPictures,
     /// Nothing that is drawn encloses an area.
     #[error("nothing that is drawn encloses an area: draw a closed shape with a fill or a stroke")]
     NoClosedShape,

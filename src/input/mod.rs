@@ -8,20 +8,30 @@ mod bitmap;
 mod coverage;
 mod decode;
 mod drawing;
+mod edges;
+mod enclosure;
 mod error;
+mod figure;
+mod found;
+mod gaps;
+mod interior;
 mod iso_line;
+mod lines;
 mod obj;
+mod paper;
 mod path;
 mod picture;
 mod svg;
 mod svg_art;
 mod svg_numbers;
 mod svg_silhouette;
+mod svg_text;
 
 pub use art::{Art, ArtElement};
 pub use bitmap::{BitmapOptions, HoleRule, open_bitmap, read_bitmap, read_pixels};
 pub use drawing::{Drawing, InputNote};
 pub use error::InputError;
+pub use figure::{FigureKind, FigureRule, PaperRule};
 pub use obj::{ObjError, ObjForm, ObjProblem, open_obj, read_obj};
 pub use path::{
     Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke, Subpath,

@@ -38,7 +38,7 @@ impl std::fmt::Debug for Picture {
 /// # Errors
 /// [`InputError`] if it is no image of a known kind and a sensible size.
 pub fn read_picture(bytes: &[u8]) -> Result<Picture, InputError> {
-    let image = decode(bytes)?;
+    let image = decode(bytes)?.image;
     let times = |c: u8, alpha: u8| ((u16::from(c) * u16::from(alpha) + 127) / 255) as u8;
     let premultiplied = |[r, g, b, a]: [u8; 4]| [times(r, a), times(g, a), times(b, a), a];
     Ok(Picture {

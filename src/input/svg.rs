@@ -2,13 +2,16 @@
 //!
 //! Bytes of an SVG file -> [`Drawing`].
 //!
-//! 1. Refuse what is compressed, too long, or holds numbers beyond any drawing (module `svg_numbers`).
+//! 1. Refuse what is compressed, too long, in another encoding than UTF-8 (module `svg_text`, which also replaces CSS variables), or
+//!    holds numbers beyond any drawing (module `svg_numbers`).
 //! 2. Parse with usvg: groups, transforms, `use`, CSS, shapes and strokes come out as paths. Nothing outside the file is
 //!    ever opened, whatever it refers to; embedded images and text are not drawn and are reported.
 //! 3. Unite what is drawn, in the element that is asked for or in all (module `svg_silhouette`).
 //! 4. Rasterise around that outline with resvg: the whole drawing, since an element names a shape, not what is painted on it,
 //!    or the element alone where the options say so ([`Extent`]).
 //! 5. Read the same elements as curves (module `svg_art`).
+//! 6. If the outline covers the page, what is drawn first is a background, whatever kind of element it is: elements are left out from
+//!    the back until the outline no longer covers the page. If nothing is left, the drawing is taken as it is. Both are told.
 //!
 //! Coordinates are the user units of the file's `viewBox`, at usvg's single precision (1e-7 of their size).
 
@@ -21,9 +24,18 @@ use usvg::roxmltree;
 use super::svg_art::read_art;
 use super::svg_numbers::check_numbers;
 use super::svg_silhouette::{affine, silhouette};
-use super::{Drawing, HoleRule, InputError, InputNote, Picture};
+use super::{Drawing, HoleRule, InputError, InputNote, Picture, svg_text};
 use crate::math::{Point, point};
 use crate::outline::Outline;
+
+/// How far a sheet may be from the borders of the page, as a fraction of its width and height together.
+const PAGE_SLACK: f64 = 0.002;
+
+/// Share of the page that a sheet covers at least: its corners may be round.
+const LEAST_SHEET: f64 = 0.97;
+
+/// The most elements that a background is made of.
+const MOST_BACKGROUND: usize = 8;
 
 /// The longest file that is read, in bytes.
 const LONGEST_FILE: usize = 64 << 20;
@@ -92,40 +104,155 @@ pub fn read_svg(bytes: &[u8], options: &SvgOptions) -> Result<Drawing, InputErro
     if bytes.len() > LONGEST_FILE {
         return Err(not_svg("it is longer than 64 MiB"));
     }
-    let text = std::str::from_utf8(bytes).map_err(|_| not_svg("it is not UTF-8 text"))?;
+    let text = svg_text::decode(bytes).map_err(|reason| not_svg(&reason))?;
+    let (text, missing) = svg_text::with_variables(text);
+    let mut drawing = Source::new(&text)?.read(options)?;
+    if options.element.is_none() && page_use(&drawing) == PageUse::Whole {
+        drawing.drawing.notes.push(InputNote::FillsCanvas);
+        if let Some(figure) = without_background(&text, options)? {
+            drawing = figure;
+        }
+    }
+    let mut drawing = drawing.drawing;
+    if !missing.is_empty() {
+        drawing.notes.push(InputNote::VariablesUnknown { names: missing });
+    }
+    Ok(drawing)
+}
+
+/// A drawing with the page that it is on.
+struct OnPage {
+    drawing: Drawing,
+    /// The page, in user units.
+    page: kurbo::Rect,
+}
+
+/// How much of the page an outline takes up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum PageUse {
+    /// It does not reach from one border to the opposite one.
+    Within,
+    /// It does, as ground and sky do.
+    Across,
+    /// It covers the page, as a sheet does.
+    Whole,
+}
+
+fn page_use(on_page: &OnPage) -> PageUse {
+    let page = on_page.page;
+    let slack = PAGE_SLACK * (page.width() + page.height());
+    let Some((low, high)) = point::bounding_box(on_page.drawing.outline.outer().points()) else {
+        return PageUse::Within;
+    };
+    let is_wide = low.x <= page.x0 + slack && high.x >= page.x1 - slack;
+    let is_high = low.y <= page.y0 + slack && high.y >= page.y1 - slack;
+    if is_wide && is_high && on_page.drawing.outline.area() >= LEAST_SHEET * page.area() {
+        PageUse::Whole
+    } else if is_wide || is_high {
+        PageUse::Across
+    } else {
+        PageUse::Within
+    }
+}
+
+/// The drawing without what is drawn first, as far as that covers the page; `None` if nothing smaller than the page is left. If what is
+/// left then reaches from border to border, more is left out as far as something is left that does not: sky, then ground.
+fn without_background(text: &str, options: &SvgOptions) -> Result<Option<OnPage>, InputError> {
+    let mut text = text.to_owned();
+    let mut best: Option<(PageUse, OnPage)> = None;
+    for _ in 0..MOST_BACKGROUND {
+        let Some(first) = svg_text::first_drawn(&parse(&text)?) else {
+            break;
+        };
+        text = svg_text::blanked(&text, first);
+        let Ok(mut figure) = Source::new(&text)?.read(options) else {
+            // Nothing but background.
+            break;
+        };
+        let usage = page_use(&figure);
+        if usage < best.as_ref().map_or(PageUse::Whole, |(least, _)| *least) {
+            figure.drawing.notes.push(InputNote::BackgroundLeftOut);
+            best = Some((usage, figure));
+        }
+        if usage == PageUse::Within {
+            break;
+        }
+    }
+    Ok(best.map(|(_, figure)| figure))
+}
+
+fn parse(text: &str) -> Result<roxmltree::Document<'_>, InputError> {
     let parsing = roxmltree::ParsingOptions {
         allow_dtd: true,
         ..roxmltree::ParsingOptions::default()
     };
-    let document = roxmltree::Document::parse_with_options(text, parsing).map_err(|error| not_svg(&error))?;
-    if document.root_element().tag_name().name() != "svg" {
-        return Err(not_svg("its root element is not 'svg'"));
-    }
-    check_numbers(&document)?;
-    let tree = usvg::Tree::from_xmltree(&document, &closed_options()).map_err(|error| not_svg(&error))?;
+    roxmltree::Document::parse_with_options(text, parsing).map_err(|error| not_svg(&error))
+}
 
-    let to_user = user_units(&document, &tree);
-    let nodes: Vec<&usvg::Node> = match &options.element {
-        Some(id) => vec![find(tree.root(), id).ok_or_else(|| missing(id, &document))?],
-        None => tree.root().children().iter().collect(),
-    };
-    let (outline, mut notes) = silhouette(&nodes, to_user, options.holes)?;
-    note_undrawn(&document, &mut notes);
-    // The element says whose outline is meant; the drawing is everything in the file, unless it is one layer of it.
-    let drawn: Vec<&usvg::Node> = match options.extent {
-        Extent::Everything => tree.root().children().iter().collect(),
-        Extent::Element => nodes,
-    };
-    let picture = rasterise(&drawn, to_user, &outline, options.pixels_per_unit)?;
-    let art = read_art(&drawn, to_user, &mut notes)
-        .map_err(|reason| notes.push(InputNote::NotCurves { reason }))
-        .ok();
-    Ok(Drawing {
-        outline,
-        picture,
-        art,
-        notes,
-    })
+/// A file that is parsed.
+struct Source<'a> {
+    document: roxmltree::Document<'a>,
+    tree: usvg::Tree,
+}
+
+impl<'a> Source<'a> {
+    fn new(text: &'a str) -> Result<Self, InputError> {
+        let document = parse(text)?;
+        if document.root_element().tag_name().name() != "svg" {
+            return Err(not_svg("its root element is not 'svg'"));
+        }
+        check_numbers(&document)?;
+        let tree = usvg::Tree::from_xmltree(&document, &closed_options()).map_err(|error| not_svg(&error))?;
+        Ok(Self { document, tree })
+    }
+
+    fn read(&self, options: &SvgOptions) -> Result<OnPage, InputError> {
+        let Self { document, tree } = self;
+        let to_user = user_units(document, tree);
+        let nodes: Vec<&usvg::Node> = match &options.element {
+            Some(id) => vec![find(tree.root(), id).ok_or_else(|| missing(id, document))?],
+            None => tree.root().children().iter().collect(),
+        };
+        let (outline, mut notes) = silhouette(&nodes, to_user, options.holes).map_err(|error| match error {
+            InputError::NoClosedShape => nothing_but(document).unwrap_or(InputError::NoClosedShape),
+            other => other,
+        })?;
+        note_undrawn(document, &mut notes);
+        // The element says whose outline is meant; the drawing is everything in the file, unless it is one layer of it.
+        let drawn: Vec<&usvg::Node> = match options.extent {
+            Extent::Everything => tree.root().children().iter().collect(),
+            Extent::Element => nodes,
+        };
+        let picture = rasterise(&drawn, to_user, &outline, options.pixels_per_unit)?;
+        let art = read_art(&drawn, to_user, &mut notes)
+            .map_err(|reason| notes.push(InputNote::NotCurves { reason }))
+            .ok();
+        let size = tree.size();
+        let page = kurbo::Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height()));
+        let [a, b, c, d, ..] = to_user.as_coeffs();
+        Ok(OnPage {
+            drawing: Drawing {
+                outline,
+                picture,
+                art,
+                notes,
+                unit_px: (a * d - b * c).abs().sqrt().recip(),
+            },
+            page: to_user.transform_rect_bbox(page),
+        })
+    }
+}
+
+/// Why a file without closed shapes shows something nevertheless.
+fn nothing_but(document: &roxmltree::Document) -> Option<InputError> {
+    let has = |tag: &str| document.descendants().any(|node| node.tag_name().name() == tag);
+    if has("text") {
+        Some(InputError::OnlyText)
+    } else if has("image") {
+        Some(InputError::OnlyPictures)
+    } else {
+        None
+    }
 }
 
 fn not_svg(reason: &(impl std::fmt::Display + ?Sized)) -> InputError {

@@ -1,13 +1,14 @@
 //! The silhouette of vector art: everything that is drawn, united.
 //!
 //! 1. Every fill is flattened and made a region by its own fill rule; every stroke is widened to a region first (joins,
-//!    caps and dashes as drawn). Groups with a clip path are cut by it.
+//!    caps and dashes as drawn). Groups with a clip path or a mask are cut by it.
 //! 2. All regions are united (i_overlay, on an integer grid of 2^-60 of the drawing, where decisions are exact).
 //! 3. Where the boundary meets itself in a point (a figure of eight, a hole that reaches the edge), a patch joins the two
 //!    sides, since an outline must not touch itself. Its half width is [`PATCH`].
 //! 4. The largest part is the outline.
 //!
-//! Masks and filters do not change the outline. Opacity does only where it is 0.
+//! Masks cut where they let through less than half; within a mask, what clips and masks groups of its own is taken as it is. Filters do
+//! not change the outline. Opacity does only where it is 0.
 
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
@@ -128,12 +129,20 @@ fn largest_outline(parts: &[Region], hole_rule: HoleRule) -> Result<(Outline, Ve
     let dirt = DIRT_SHARE * measured[largest].0;
     let mut notes = Vec::new();
     let (mut specks, mut speck_area) = (0, 0.0);
+    let mut loose: Vec<(f64, Point)> = Vec::new();
     for (_, &(area, place)) in measured.iter().enumerate().filter(|(k, _)| *k != largest) {
         if area < dirt {
             (specks, speck_area) = (specks + 1, speck_area + area);
         } else {
-            notes.push(InputNote::PartLeftOut { place, area });
+            loose.push((area, place));
         }
+    }
+    if let Some(&(_, place)) = loose.iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
+        notes.push(InputNote::PartsLeftOut {
+            count: loose.len(),
+            area: loose.iter().map(|(area, _)| area).sum(),
+            place,
+        });
     }
     if specks > 0 {
         notes.push(InputNote::SpecksLeftOut {
@@ -193,6 +202,10 @@ fn add_group(group: &usvg::Group, to_user: Affine, tolerance: f64, drawn: &mut R
         let place = to_user * affine(group.abs_transform());
         inside = cut(&inside, &clip_region(clip, place, tolerance)?);
     }
+    if let Some(mask) = group.mask() {
+        let place = to_user * affine(group.abs_transform());
+        inside = cut(&inside, &mask_region(mask, place, tolerance)?);
+    }
     drawn.append(&mut inside);
     Ok(())
 }
@@ -208,6 +221,84 @@ fn clip_region(clip: &usvg::ClipPath, place: Affine, tolerance: f64) -> Result<R
     match clip.clip_path() {
         Some(outer) => Ok(cut(&region, &clip_region(outer, place, tolerance)?)),
         None => Ok(region),
+    }
+}
+
+/// What a mask lets through, at least by half; `place` maps the coordinates of the masked group to user units. What is drawn in it
+/// later covers what was drawn before: paint that lets through is added, paint that does not is taken away.
+fn mask_region(mask: &usvg::Mask, place: Affine, tolerance: f64) -> Result<Region, InputError> {
+    let mut region = Region::new();
+    add_to_mask(mask.root(), mask.kind(), place, tolerance, &mut region)?;
+    let bounds = mask.rect();
+    let corners = [
+        (bounds.left(), bounds.top()),
+        (bounds.right(), bounds.top()),
+        (bounds.right(), bounds.bottom()),
+        (bounds.left(), bounds.bottom()),
+    ];
+    let bounds = corners.map(|(x, y)| {
+        let p = place * kurbo::Point::new(f64::from(x), f64::from(y));
+        [p.x, p.y]
+    });
+    let region = cut(&region, &unite(&vec![bounds.to_vec()], FillRule::NonZero).concat());
+    match mask.mask() {
+        Some(outer) => Ok(cut(&region, &mask_region(outer, place, tolerance)?)),
+        None => Ok(region),
+    }
+}
+
+fn add_to_mask(
+    group: &usvg::Group,
+    kind: usvg::MaskType,
+    place: Affine,
+    tolerance: f64,
+    region: &mut Region,
+) -> Result<(), InputError> {
+    for child in group.children() {
+        match child {
+            usvg::Node::Group(inner) if inner.clip_path().is_none() && inner.mask().is_none() => {
+                add_to_mask(inner, kind, place, tolerance, region)?;
+            }
+            usvg::Node::Path(path) => {
+                let mut own = Region::new();
+                add_path(path, place, tolerance, &mut own)?;
+                let paint = path.fill().map(|fill| (fill.paint(), fill.opacity().get()));
+                let paint = paint.or_else(|| path.stroke().map(|stroke| (stroke.paint(), stroke.opacity().get())));
+                let lets_through = paint.is_some_and(|(paint, opacity)| match kind {
+                    usvg::MaskType::Alpha => opacity >= 0.5,
+                    usvg::MaskType::Luminance => opacity * luminance(paint) >= 0.5,
+                });
+                if lets_through {
+                    region.append(&mut own);
+                } else if kind == usvg::MaskType::Luminance {
+                    *region = FloatOverlay::<[f64; 2], i64>::from_subj_and_clip(&*region, &own)
+                        .overlay(OverlayRule::Difference, FillRule::NonZero)
+                        .into_iter()
+                        .flatten()
+                        .collect();
+                }
+            }
+            other => add_node(other, place, tolerance, region)?,
+        }
+    }
+    Ok(())
+}
+
+/// How light a paint is, from 0 to 1; of gradients the lightest colour counts.
+fn luminance(paint: &usvg::Paint) -> f32 {
+    let of = |colour: usvg::Color| {
+        let [red, green, blue] = [colour.red, colour.green, colour.blue].map(|c| f32::from(c) / 255.0);
+        0.2125 * red + 0.7154 * green + 0.0721 * blue
+    };
+    let lightest = |stops: &[usvg::Stop]| {
+        let light = stops.iter().map(|stop| of(stop.color()) * stop.opacity().get());
+        light.fold(0.0, f32::max)
+    };
+    match paint {
+        usvg::Paint::Color(colour) => of(*colour),
+        usvg::Paint::LinearGradient(gradient) => lightest(gradient.stops()),
+        usvg::Paint::RadialGradient(gradient) => lightest(gradient.stops()),
+        usvg::Paint::Pattern(_) => 1.0,
     }
 }
 

@@ -7,6 +7,7 @@
 //! - `elastic`, `start`: dynamic programming over turning and stretch, over all cyclic starts.
 //! - `coarse`, `pair`, `thin_plate`, `monotone`: from coarse candidates to the match of a pose to the reference.
 //! - `n_way`, `landmark`: all poses, guided by landmarks.
+//! - `openings`: which holes all outlines have.
 
 mod candidates;
 mod coarse;
@@ -20,6 +21,7 @@ mod frame;
 mod landmark;
 mod monotone;
 mod n_way;
+mod openings;
 mod pair;
 mod reflection;
 mod start;
@@ -32,3 +34,4 @@ pub use feature::SalientPoint;
 pub use landmark::Landmark;
 pub(crate) use n_way::match_rings_beside;
 pub use n_way::{MatchOptions, MatchReport, MirrorHints, PoseMatch, RingMatch, match_rings};
+pub use openings::shared_holes;

@@ -22,7 +22,7 @@ use super::drawn::{Drawn, match_drawn};
 use super::frame::{Frame, Model, ModelCurve};
 use super::landmark::{Landmark, validated};
 use super::monotone::CyclicMap;
-use super::pair::{self, PairMatch, Pin, match_pose};
+use super::pair::{self, Known, PairMatch, Pin, match_pose};
 use super::reflection::{MIRROR_SAMPLES, reflection_ratio};
 use super::{Correspondence, MatchError, SalientPoint};
 use crate::math::wrapped;
@@ -352,7 +352,8 @@ fn match_some(
             }
             let expected = options.turn_of(pose);
             let upright = upright(&frame, [&forms[reference], &forms[pose]], &pins[pose], expected);
-            pinned_match(&frame, &model, &forms[pose], &pins[pose], upright.as_deref(), expected)
+            let known = upright.as_deref().map_or(Known::Nothing, Known::Upright);
+            pinned_match(&frame, &model, &forms[pose], &pins[pose], known, expected)
                 .ok_or(MatchError::NoMatch { pose })
                 .map(Some)
         })
@@ -388,8 +389,9 @@ fn match_jointly(forms: &[Form], matched: &mut StarMatch, options: &MatchOptions
             }
         });
         let model = Model::new(others.collect());
-        let current = matches[pose].as_ref().map(|matched| &matched.parameters[..]);
-        if let Some(again) = pinned_match(frame, &model, &forms[pose], &pins[pose], current, options.turn_of(pose)) {
+        let current = matches[pose].as_ref();
+        let known = current.map_or(Known::Nothing, |matched| Known::Current(&matched.parameters));
+        if let Some(again) = pinned_match(frame, &model, &forms[pose], &pins[pose], known, options.turn_of(pose)) {
             matches[pose] = Some(again);
         }
     }
@@ -425,10 +427,10 @@ fn pinned_match(
     model: &Model,
     form: &Form,
     pins: &[Pin],
-    current: Option<&[f64]>,
+    known: Known,
     expected_rad: f64,
 ) -> Option<PairMatch> {
-    let mut matched = match_pose(frame, model, form, pins, current, expected_rad)?;
+    let mut matched = match_pose(frame, model, form, pins, known, expected_rad)?;
     through_pins(&mut matched, pins);
     Some(matched)
 }

@@ -33,6 +33,8 @@ const TIE_MARGIN: (f32, f32) = (1.003, 0.01);
 /// What a radian of rotation of the whole drawing costs, as much as an elastic difference: between drawings of a thing that was squashed from tall
 /// to wide there is half of this or less, between those of an animal in two postures more than three times as much.
 const TURN_COST: f64 = 0.3;
+/// A match is taken for staying upright if it turns the drawing by so much less than the cheapest, in radians.
+const UPRIGHT_RAD: f64 = 0.35;
 /// Rows between two samples of the elastic match.
 const ELASTIC_STRIDE: usize = 2;
 /// How far the fine match may leave the coarse one, in perimeters.
@@ -75,13 +77,13 @@ pub(super) struct PairMatch {
 }
 
 /// Matches `pose` to `model`, whose rows are those of `frame`. `pins` are in order of their rows, and their parameters in
-/// cyclic order; `current` is a match to improve.
+/// cyclic order.
 pub(super) fn match_pose(
     frame: &Frame,
     model: &Model,
     pose: &Form,
     pins: &[Pin],
-    current: Option<&[f64]>,
+    known: Known,
     expected_rad: f64,
 ) -> Option<PairMatch> {
     let task = Task {
@@ -93,7 +95,7 @@ pub(super) fn match_pose(
     };
     let table = task.table();
     let mut candidates = if pins.is_empty() {
-        task.candidates(&table, current)
+        task.candidates(&table, known)
     } else {
         let path = cheapest_path(&table, 0, &table.reachable(0))?;
         vec![CoarseMatch::from_path(&table, &path)]
@@ -106,8 +108,35 @@ pub(super) fn match_pose(
         .into_iter()
         .map(|candidate| task.guided(&table, candidate))
         .collect();
+    let turned = guided.clone();
     let chosen = task.choose(guided)?;
-    Some(measured(model, pose, task.refit(&chosen.map)))
+    // A match that was taken for staying upright, not for its turning, does not follow the turning any further.
+    let cheapest = turned.iter().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+    let keeps_upright = task.rotation(cheapest) - task.rotation(&chosen) > UPRIGHT_RAD;
+    let map = match known {
+        Known::Upright(parameters) if keeps_upright => CyclicMap::through(model.rows.clone(), parameters.to_vec()),
+        _ => chosen.map,
+    };
+    Some(measured(model, pose, task.refit(&map)))
+}
+
+/// A match that is known before, by the pose's parameters.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Known<'a> {
+    Nothing,
+    /// To be improved.
+    Current(&'a [f64]),
+    /// The one that turns the drawing least.
+    Upright(&'a [f64]),
+}
+
+impl<'a> Known<'a> {
+    fn parameters(self) -> Option<&'a [f64]> {
+        match self {
+            Self::Nothing => None,
+            Self::Current(parameters) | Self::Upright(parameters) => Some(parameters),
+        }
+    }
 }
 
 /// One pose, what it is compared with, and the landmarks it has to go through.
@@ -138,11 +167,11 @@ impl Task<'_> {
     }
 
     /// Fine matches around the best coarse ones and around the current one.
-    fn candidates(&self, table: &MismatchTable, current: Option<&[f64]>) -> Vec<CoarseMatch> {
+    fn candidates(&self, table: &MismatchTable, known: Known) -> Vec<CoarseMatch> {
         let (rows, curves) = self.model.coarse_samples();
         let columns = self.pose.even_samples(rows.len());
         let mut coarse = coarse_matches_to(rows, &curves, &columns, CANDIDATES);
-        coarse.extend(current.map(|parameters| CoarseMatch {
+        coarse.extend(known.parameters().map(|parameters| CoarseMatch {
             map: CyclicMap::through(self.model.rows.clone(), parameters.to_vec()),
             cost: f32::INFINITY,
         }));

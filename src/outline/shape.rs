@@ -41,6 +41,7 @@ pub enum OutlineError {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
     rings: Vec<Ring>,
+    openings: Vec<Ring>,
 }
 
 impl Outline {
@@ -80,7 +81,10 @@ impl Outline {
                 return Err(OutlineError::HoleOutside { hole });
             }
         }
-        Ok(Self { rings })
+        Ok(Self {
+            rings,
+            openings: Vec::new(),
+        })
     }
 
     /// The outer ring.
@@ -101,11 +105,40 @@ impl Outline {
         &self.rings
     }
 
+    /// What is open in the drawing, but no hole of its outline: a mesh covers it, and the picture's transparency shows it.
+    #[must_use]
+    pub fn openings(&self) -> &[Ring] {
+        &self.openings
+    }
+
+    /// The outline with these rings as its openings, in place of those that it has.
+    #[must_use]
+    pub fn with_openings(mut self, openings: Vec<Ring>) -> Self {
+        self.openings = openings;
+        self
+    }
+
+    /// The outline with the holes of the given indices, in that order; its other holes become openings.
+    #[must_use]
+    pub fn with_holes_in_order(&self, kept: &[usize]) -> Self {
+        let holes = self.holes();
+        let covered = (0..holes.len()).filter(|hole| !kept.contains(hole));
+        let rings = std::iter::once(self.outer()).chain(kept.iter().filter_map(|&hole| holes.get(hole)));
+        Self {
+            rings: rings.cloned().collect(),
+            openings: covered
+                .map(|hole| holes[hole].clone())
+                .chain(self.openings.iter().cloned())
+                .collect(),
+        }
+    }
+
     /// The outline without its holes.
     #[must_use]
     pub fn filled(&self) -> Self {
         Self {
             rings: vec![self.rings[0].clone()],
+            openings: Vec::new(),
         }
     }
 

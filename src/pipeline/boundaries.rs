@@ -256,8 +256,9 @@ pub(super) fn order_holes(outlines: &mut [Outline], reference: usize) -> Result<
                 ordered.push(left.remove(nearest));
             }
         }
-        *outline =
-            Outline::new(outline.outer().clone(), ordered).map_err(|error| PipelineError::stage(&[], None, error))?;
+        *outline = Outline::new(outline.outer().clone(), ordered)
+            .map_err(|error| PipelineError::stage(&[], None, error))?
+            .with_openings(outline.openings().to_vec());
     }
     Ok(())
 }

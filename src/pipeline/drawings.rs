@@ -5,8 +5,9 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::PipelineError;
-use super::spec::{DrawnPose, Facing, LayerSpec, SvgSource};
+use super::spec::{DrawnPose, Facing, LayerSpec, SvgSource, UnsharedHoles};
 use crate::input::{Drawing, InputError, SvgOptions, read_svg};
+use crate::matching::shared_holes;
 use crate::math::Point;
 use crate::math::point::bounding_box;
 use crate::outline::{Outline, OutlineError, Ring};
@@ -46,9 +47,38 @@ pub(super) fn used_drawings(
     let used: Vec<Result<Arc<Drawing>, InputError>> = (drawn.into_par_iter())
         .map(|pose| kept(pose).map_or_else(|| pose.as_used(), Ok))
         .collect();
-    (used.into_iter().zip(layer.drawn_poses()))
+    let mut drawings = (used.into_iter().zip(layer.drawn_poses()))
         .map(|(drawing, pose)| drawing.map_err(|source| refusal(layer, pose, source)))
-        .collect()
+        .collect::<Result<Vec<_>, _>>()?;
+    if layer.unshared_holes == UnsharedHoles::Cover {
+        cover_unshared_holes(&mut drawings);
+    }
+    Ok(drawings)
+}
+
+/// Makes openings of the holes that not all drawings have: the mesh covers them, and the texture's alpha opens and closes them. The others
+/// come to stand in one order.
+fn cover_unshared_holes(drawings: &mut [Arc<Drawing>]) {
+    if drawings.iter().all(|drawing| drawing.outline.holes().is_empty()) {
+        return;
+    }
+    let outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
+    let shared = shared_holes(&outlines);
+    let is_every_hole = |outline: &Outline| outline.holes().len() == shared.len();
+    if outlines.iter().all(is_every_hole) {
+        // The order is that of the matching.
+        return;
+    }
+    for (pose, drawing) in drawings.iter_mut().enumerate() {
+        let kept: Vec<usize> = shared.iter().map(|of_poses| of_poses[pose]).collect();
+        let outline = drawing.outline.with_holes_in_order(&kept);
+        if outline != drawing.outline {
+            *drawing = Arc::new(Drawing {
+                outline,
+                ..drawing.as_ref().clone()
+            });
+        }
+    }
 }
 
 /// Draws vector drawings again whose pictures are coarser than frames at `frame_scale` pixels a unit.
@@ -67,6 +97,7 @@ pub(super) fn sharpen(layer: &LayerSpec, drawings: &mut [Arc<Drawing>], frame_sc
                     outline: drawing.outline.clone(),
                     art: None,
                     notes: Vec::new(),
+                    unit_px: drawing.unit_px,
                 });
             }
             Ok(())
@@ -90,6 +121,7 @@ fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
         mut picture,
         art,
         notes,
+        unit_px,
     } = drawing;
     for row in picture.pixels.chunks_exact_mut(picture.width.max(1)) {
         row.reverse();
@@ -105,11 +137,18 @@ fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
         .map(reflect)
         .collect::<Result<_, _>>()
         .map_err(degenerate)?;
+    let openings = outline
+        .openings()
+        .iter()
+        .map(reflect)
+        .collect::<Result<_, _>>()
+        .map_err(degenerate)?;
     Ok(Drawing {
-        outline: Outline::new(outer, holes)?,
+        outline: Outline::new(outer, holes)?.with_openings(openings),
         picture,
         art: art.map(|art| art.mirrored(axis)),
         notes,
+        unit_px,
     })
 }
 
@@ -142,6 +181,7 @@ mod tests {
             },
             art: None,
             notes: vec![],
+            unit_px: 1.0,
         };
         let once = mirrored(drawing.clone()).expect("a drawing");
         // The outline is one unit wide, from 1 to 2, and stays there; so does the pixel under it.

@@ -43,7 +43,7 @@ pub enum PipelineError {
     /// The poses have different numbers of holes.
     #[error(
         "pose '{pose}' has {found} holes, but pose '{other}' has {expected}; draw the same holes in every pose, or set \
-         `holes = \"fill\"` under [input]"
+         `holes = \"match\"` or `holes = \"fill\"` under [input]"
     )]
     HoleCount {
         /// The pose that differs.

@@ -20,6 +20,9 @@ use crate::pose::{Mapping, Matching, MeshQuality, PoseSet};
 /// of it.
 const FINER_LINES: [f64; 4] = [1.0, 0.25, 0.0625, 0.0];
 
+/// By how much, as a fraction, the units of drawings may differ without a word: rounding of a page's size.
+const LIKE_UNITS: f64 = 0.02;
+
 /// A variation of the simplification with fewer Steiner points is kept if the low angles of its refined mesh are at least
 /// this share of the first one's: good triangles are worth more than few points.
 const VARIED_ANGLES: f64 = 0.97;
@@ -76,6 +79,7 @@ fn map_drawn(
     for (name, drawing) in names.iter().zip(drawings) {
         notes.extend(drawing.notes.iter().map(|note| format!("pose '{name}': {note}")));
     }
+    notes.extend(note_on_units(&names, drawings));
     check_hole_counts(&names, drawings)?;
     let landmarks = landmarks::sorted(layer, drawings)?;
 
@@ -171,6 +175,22 @@ fn map_drawn(
         },
     };
     Ok((mapping, report, Arc::clone(&boundaries)))
+}
+
+/// Says that drawings are in different units, as one in millimetres among others in pixels is.
+fn note_on_units(names: &[String], drawings: &[Arc<Drawing>]) -> Option<String> {
+    let unit = |pose: &usize| drawings[*pose].unit_px;
+    let by_unit = |a: &usize, b: &usize| unit(a).total_cmp(&unit(b));
+    let smallest = (0..drawings.len()).min_by(by_unit)?;
+    let largest = (0..drawings.len()).max_by(by_unit)?;
+    let times = unit(&largest) / unit(&smallest);
+    (times > 1.0 + LIKE_UNITS).then(|| {
+        format!(
+            "a unit of pose '{}' is {times:.2} times as large on the page as one of pose '{}', and coordinates are taken as they are; save \
+             both with the same units and viewBox if one looks too small",
+            names[largest], names[smallest]
+        )
+    })
 }
 
 /// The best of some variations of the simplification by their sketched triangulations, if any beats the first.

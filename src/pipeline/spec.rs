@@ -142,6 +142,18 @@ pub struct LayerSpec {
     pub blend: BlendOptions,
     /// What it hangs on; `None` (the default) if it moves by itself.
     pub attachment: Option<Attachment>,
+    /// What becomes of holes that not all of its drawings have.
+    pub unshared_holes: UnsharedHoles,
+}
+
+/// What becomes of holes that not all drawings of a layer have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum UnsharedHoles {
+    /// The mesh covers them; in the drawings that have them the texture is open there, and in between it opens and closes.
+    #[default]
+    Cover,
+    /// They are refused.
+    Refuse,
 }
 
 /// One pose of a layer.
@@ -309,6 +321,7 @@ impl LayerSpec {
             mesh: MeshOptions::default(),
             blend: BlendOptions::default(),
             attachment: None,
+            unshared_holes: UnsharedHoles::default(),
         }
     }
 }

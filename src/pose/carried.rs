@@ -65,8 +65,13 @@ impl CarriedOutline {
             carried.push(Ring::new(after)?);
         }
         let outer = carried.remove(0);
+        let openings = outline.openings().iter().map(|opening| {
+            let points = subdivided(opening, &edges).into_iter().map(carry);
+            Ok(Ring::new(points.collect::<Result<Vec<_>, CarryError>>()?)?)
+        });
+        let openings = openings.collect::<Result<_, CarryError>>()?;
         Ok(Self {
-            outline: Outline::new(outer, carried)?,
+            outline: Outline::new(outer, carried)?.with_openings(openings),
             rings,
         })
     }

@@ -135,7 +135,12 @@ impl Mapping {
                 .map(|((name, positions), outline)| PoseText {
                     name: name.clone(),
                     outline: pairs(outline.outer().points()),
-                    holes: outline.holes().iter().map(|hole| pairs(hole.points())).collect(),
+                    holes: outline
+                        .holes()
+                        .iter()
+                        .chain(outline.openings())
+                        .map(|hole| pairs(hole.points()))
+                        .collect(),
                     vertices: pairs(positions),
                 })
                 .collect(),
@@ -171,7 +176,12 @@ impl Mapping {
                 outer.pose_count()
             )));
         }
-        let outlines = text.poses.iter().map(outline).collect::<Result<_, _>>()?;
+        let open = text.rings.len().saturating_sub(1);
+        let outlines = text
+            .poses
+            .iter()
+            .map(|pose| outline(pose, open))
+            .collect::<Result<_, _>>()?;
         Ok(Self {
             outlines,
             rings: text.rings.clone(),
@@ -319,8 +329,11 @@ fn pose_set(text: MappingText) -> Result<PoseSet, MappingFileError> {
     Ok(PoseSet::new(Topology::new(vertex_count, text.triangles)?, poses)?)
 }
 
-fn outline(pose: &PoseText) -> Result<Outline, MappingFileError> {
-    assemble(&pose.name, rings(&pose.name, &pose.outline, &pose.holes)?)
+/// The outline of a pose whose first `open` holes are those of the mesh; the others are covered by it.
+fn outline(pose: &PoseText, open: usize) -> Result<Outline, MappingFileError> {
+    let whole = assemble(&pose.name, rings(&pose.name, &pose.outline, &pose.holes)?)?;
+    let open: Vec<usize> = (0..whole.holes().len().min(open)).collect();
+    Ok(whole.with_holes_in_order(&open))
 }
 
 fn rings(name: &str, outer: &[[f64; 2]], holes: &[Vec<[f64; 2]>]) -> Result<Vec<Ring>, MappingFileError> {

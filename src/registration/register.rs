@@ -239,14 +239,13 @@ impl<'a> Pair<'a> {
         beginnings: &[RingPairs],
     ) -> Result<(Vec<Point>, f64, usize), RegistrationError> {
         let rigid = Rigid::new(self.lattice, 1.0);
-        let here = Window::here();
-        let image = ByteImage::new(&self.pose.blurred(LEVELS[0].deviation_px), here.reach);
         let mut best: Option<(f64, Vec<Point>, usize)> = None;
         for (number, beginning) in beginnings.iter().enumerate() {
-            let places = self.begun(&rigid, beginning)?;
+            let mut places = self.begun(&rigid, beginning)?;
             let difference = if beginnings.len() > 1 {
-                let rotations = rigid.rotations(&places, 1);
-                mean_residual(&templates[0].fits(&image, &places, &rotations, &here, 1.0))
+                let fits;
+                (places, fits) = self.level(&LEVELS[0], &templates[0], &rigid, places)?;
+                mean_residual(&fits)
             } else {
                 0.0
             };
@@ -259,7 +258,9 @@ impl<'a> Pair<'a> {
             return Err(RegistrationError::NoFigure);
         };
         let mut residual = 0.0;
-        for (level, template) in LEVELS.iter().zip(templates) {
+        // Where there was a choice, the first level is done.
+        let done = usize::from(beginnings.len() > 1);
+        for (level, template) in LEVELS.iter().zip(templates).skip(done) {
             let fits;
             (places, fits) = self.level(level, template, &rigid, places)?;
             residual = mean_residual(&fits);

@@ -13,7 +13,8 @@ use toml::Spanned;
 
 use super::error::{SceneError, SceneProblem};
 use super::file::SceneFile;
-use super::settings::{Holes, InputSettings, Layout, PoseSpaceSettings, Provider, Scene};
+use super::settings::{Holes, InputSettings, Layout, PoseSpaceSettings, Provider, ReadingSettings, Scene};
+use crate::input::{FigureRule, PaperRule};
 use crate::pipeline::{ArtChoice, MeshOptions};
 use crate::render::ColourBlend;
 use crate::weights::{PseudoPose, Radial, Range};
@@ -55,6 +56,14 @@ pub(super) fn text_of(file: &Path) -> Checked<String> {
             reason: error.to_string(),
         },
     })
+}
+
+/// The keys that say how a drawing is read, under `[input]` or of one pose.
+pub(super) struct WrittenReading<'a> {
+    pub(super) figure: &'a Option<Spanned<String>>,
+    pub(super) gap: &'a Option<Spanned<f64>>,
+    pub(super) paper: &'a Option<Spanned<String>>,
+    pub(super) threshold: &'a Option<Spanned<f64>>,
 }
 
 /// A scene file's text, and what to say when something in it is wrong.
@@ -108,7 +117,8 @@ impl Reader<'_> {
     fn scene(&self, written: SceneFile) -> Checked<Scene> {
         self.check_version(&written.version)?;
         let layer_names = self.layer_names(&written.layer)?;
-        let poses = self.poses(&written.pose, &layer_names)?;
+        let input = self.input(&written)?;
+        let poses = self.poses(&written.pose, &layer_names, &input.reading)?;
         let names: Vec<&str> = poses.iter().map(|p| p.name.as_str()).collect();
         self.check_drawn(written.reference.as_ref(), &written.landmark, &written.pose)?;
         let (landmarks, paths) = self.landmarks(&written.landmark, &names, &layer_names)?;
@@ -116,7 +126,6 @@ impl Reader<'_> {
             Some(name) => Some(self.pose_index(name, "`reference`", &names)?),
             None => None,
         };
-        let input = self.input(&written)?;
         let pose_space = self.pose_space(&written)?;
         let dimension = poses.first().map_or(0, |p| p.at.len());
         // All poses have a place or none.
@@ -278,13 +287,55 @@ impl Reader<'_> {
             holes: self.choice(
                 &written.input.holes,
                 "[input] holes",
-                &[("keep", Holes::Keep), ("fill", Holes::Fill)],
-                "'keep' or 'fill'",
+                &[("match", Holes::Match), ("keep", Holes::Keep), ("fill", Holes::Fill)],
+                "'match', 'keep' or 'fill'",
             )?,
+            reading: self.reading(
+                &WrittenReading {
+                    figure: &written.input.figure,
+                    gap: &written.input.gap,
+                    paper: &written.input.paper,
+                    threshold: &written.input.threshold,
+                },
+                "[input]",
+                &ReadingSettings::default(),
+            )?,
+        })
+    }
+
+    /// How drawings are read, where it is written, else as in `usual`; `owner` is what the keys stand under.
+    pub(super) fn reading(
+        &self,
+        written: &WrittenReading<'_>,
+        owner: &str,
+        usual: &ReadingSettings,
+    ) -> Checked<ReadingSettings> {
+        let key = |name: &str| format!("{owner} {name}");
+        Ok(ReadingSettings {
+            figure: match written.figure {
+                Some(_) => self.choice(
+                    written.figure,
+                    &key("figure"),
+                    &FigureRule::NAMED,
+                    "'auto', 'alpha', 'background' or 'lines'",
+                )?,
+                None => usual.figure,
+            },
+            gap: self.number(
+                written.gap,
+                &key("gap"),
+                usual.gap,
+                |v| (0.0..=0.2).contains(&v),
+                "between 0 and 0.2, a fraction of the drawing's diagonal",
+            )?,
+            paper: match written.paper {
+                Some(_) => self.choice(written.paper, &key("paper"), &PaperRule::NAMED, "'keep' or 'clear'")?,
+                None => usual.paper,
+            },
             threshold: self.number(
-                &written.input.threshold,
-                "[input] threshold",
-                InputSettings::default().threshold,
+                written.threshold,
+                &key("threshold"),
+                usual.threshold,
                 |v| v > 0.0 && v < 1.0,
                 "between 0 and 1, ends excluded",
             )?,

@@ -19,7 +19,7 @@ pub(super) fn read_drawing(scene: &Scene, layer: Option<&str>, pose: usize) -> R
         return Err(scene.without_drawing(pose).into());
     };
     let holes = match scene.input.holes {
-        Holes::Keep => HoleRule::Keep,
+        Holes::Match | Holes::Keep => HoleRule::Keep,
         Holes::Fill => HoleRule::Fill,
     };
     let read = || -> Result<DrawnPose, InputError> {
@@ -40,7 +40,10 @@ pub(super) fn read_drawing(scene: &Scene, layer: Option<&str>, pose: usize) -> R
             drawn
         } else {
             let options = BitmapOptions {
-                threshold: scene.input.threshold,
+                figure: said.reading.figure,
+                gap: said.reading.gap,
+                paper: said.reading.paper,
+                threshold: said.reading.threshold,
                 holes,
             };
             DrawnPose::new(read_bitmap(&bytes, &options)?)

@@ -37,6 +37,9 @@ pub(super) struct SceneFile {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InputTable {
+    pub(super) figure: Option<Spanned<String>>,
+    pub(super) gap: Option<Spanned<f64>>,
+    pub(super) paper: Option<Spanned<String>>,
     pub(super) holes: Option<Spanned<String>>,
     pub(super) threshold: Option<Spanned<f64>>,
 }
@@ -92,6 +95,10 @@ pub(super) struct PoseTable {
     /// A path, or with layers a table of paths.
     pub(super) source: Option<Spanned<Value>>,
     pub(super) element: Option<Spanned<Value>>,
+    pub(super) figure: Option<Spanned<String>>,
+    pub(super) gap: Option<Spanned<f64>>,
+    pub(super) paper: Option<Spanned<String>>,
+    pub(super) threshold: Option<Spanned<f64>>,
     pub(super) at: Option<Spanned<Vec<f64>>>,
     pub(super) mirror: Option<bool>,
     pub(super) turns: Option<Spanned<i64>>,

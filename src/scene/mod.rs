@@ -25,8 +25,8 @@ pub use error::{SceneError, SceneProblem};
 pub use layers::{LayerAnchor, SceneLayer};
 pub use new::{NewPose, scene_text};
 pub use settings::{
-    DeformedSource, DrawnSource, Holes, InputSettings, Layout, PoseSource, PoseSpaceSettings, Provider, Scene,
-    SceneLandmark, ScenePath, ScenePose,
+    DeformedSource, DrawnSource, Holes, InputSettings, Layout, PoseSource, PoseSpaceSettings, Provider,
+    ReadingSettings, Scene, SceneLandmark, ScenePath, ScenePose,
 };
 pub use shape::{
     AxisSettings, JointScaling, JointSettings, JointShift, JointTurn, PseudoExample, ShapeExample, ShapeFile,

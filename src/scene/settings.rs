@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::SceneLayer;
 use crate::animation::Animation;
 use crate::blend::BlendOptions;
-use crate::input::Extent;
+use crate::input::{Extent, FigureRule, PaperRule};
 use crate::math::Point;
 use crate::pipeline::{ArtChoice, DeformedCopy, Facing, MeshOptions};
 use crate::render::ColourBlend;
@@ -54,8 +54,10 @@ pub struct Scene {
 /// Whether holes of the drawings are holes of the shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Holes {
-    /// They are, and correspond between the poses.
+    /// Those that all poses have are, and correspond. The others open and close in the texture.
     #[default]
+    Match,
+    /// They are, and correspond between the poses, which must have equally many.
     Keep,
     /// The shape is filled; what is transparent in the drawing stays transparent in its texture.
     Fill,
@@ -66,15 +68,40 @@ pub enum Holes {
 pub struct InputSettings {
     /// Whether holes count.
     pub holes: Holes,
+    /// How the drawings of poses that do not say it themselves are read.
+    pub reading: ReadingSettings,
+}
+
+/// How a drawing is read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReadingSettings {
+    /// How the figure is told from its sheet.
+    pub figure: FigureRule,
+    /// Widest gap in lines that is closed, as a fraction of the drawing's diagonal.
+    pub gap: f64,
+    /// What becomes of the paper inside a figure of lines.
+    pub paper: PaperRule,
     /// The coverage, between 0 and 1, that counts as inside.
     pub threshold: f64,
 }
 
 impl Default for InputSettings {
-    /// Holes kept, outline at half coverage.
+    /// Holes matched.
     fn default() -> Self {
         Self {
-            holes: Holes::Keep,
+            holes: Holes::Match,
+            reading: ReadingSettings::default(),
+        }
+    }
+}
+
+impl Default for ReadingSettings {
+    /// The figure by evidence, gaps of a hundredth closed, paper kept, outline at half coverage.
+    fn default() -> Self {
+        Self {
+            figure: FigureRule::Auto,
+            gap: 0.01,
+            paper: PaperRule::Keep,
             threshold: 0.5,
         }
     }
@@ -180,6 +207,8 @@ pub struct DrawnSource {
     pub facing: Facing,
     /// Whether only the element is drawn.
     pub extent: Extent,
+    /// How it is read.
+    pub reading: ReadingSettings,
 }
 
 /// A copy of another pose, deformed.

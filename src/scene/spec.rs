@@ -6,12 +6,13 @@
 use rayon::prelude::*;
 
 use super::drawings::read_drawing;
-use super::settings::{Layout, PoseSource, Provider, Scene};
+use super::settings::{Holes, Layout, PoseSource, Provider, Scene};
 use super::{SceneBuildError, SceneLayer};
 use crate::blend::BlendOptions;
 use crate::pipeline::{
     Attachment, Character, CharacterSpec, DrawnPose, EditableWeights, LandmarkSpec, LayerSpec, PathSpec, Places,
-    PoseShape, PoseSpec, SpaceSpec, TextureSpec, WeightOptions, automatic_places, editable_weights, map_layer,
+    PoseShape, PoseSpec, SpaceSpec, TextureSpec, UnsharedHoles, WeightOptions, automatic_places, editable_weights,
+    map_layer,
 };
 use crate::weights::{BiharmonicOptions, Range, RbfOptions};
 
@@ -178,6 +179,10 @@ impl Scene {
                 ..own.blend.clone()
             },
             attachment,
+            unshared_holes: match self.input.holes {
+                Holes::Keep => UnsharedHoles::Refuse,
+                Holes::Match | Holes::Fill => UnsharedHoles::Cover,
+            },
         })
     }
 

@@ -47,7 +47,8 @@ fn disc_outline_is_sub_pixel_by_alpha_and_by_colour() {
             assert!((radius - 12.25).abs() < 0.1, "radius {radius} at {p}");
         }
         assert!(drawing.outline.outer().signed_area() > 0.0);
-        assert_eq!(drawing.notes, vec![]);
+        let taken = on_paper.then_some(InputNote::FigurePainted { enclosed: 0 });
+        assert_eq!(drawing.notes, Vec::from_iter(taken));
         let picture = &drawing.picture;
         assert_eq!(picture.pixels[0], [0; 4]);
         assert_eq!(picture.pixels[18 * 40 + 19][3], 255);
@@ -93,10 +94,12 @@ fn holes_are_kept_pin_holes_and_loose_parts_are_told() {
     let drawing = read(&image);
     assert_eq!(drawing.outline.holes().len(), 1);
     assert_eq!(drawing.notes.len(), 3);
-    assert!(matches!(drawing.notes[0], InputNote::PartLeftOut { place, area } if
-        (place - Point::new(70.0, 10.0)).norm() < 0.1 && (area - 78.5).abs() < 4.0));
-    assert!(matches!(drawing.notes[1], InputNote::SpecksLeftOut { count: 1, .. }));
-    assert!(matches!(drawing.notes[2], InputNote::PinHolesClosed { count: 1, .. }));
+    assert_eq!(drawing.notes[0], InputNote::FigurePainted { enclosed: 0 });
+    assert!(
+        matches!(drawing.notes[1], InputNote::PartsLeftOut { count: 1, place, area } if
+        (place - Point::new(70.0, 10.0)).norm() < 0.1 && (area - 78.5).abs() < 4.0)
+    );
+    assert!(matches!(drawing.notes[2], InputNote::SpecksLeftOut { count: 1, .. }));
     assert_eq!(drawing.picture.pixels[30 * 80 + 22], [0; 4]);
 
     let fill = BitmapOptions {
@@ -204,7 +207,11 @@ proptest! {
                 prop_assert_eq!(drawing.picture.pixels.len(), (width * 12) as usize);
             }
             Err(error) => prop_assert!(
-                matches!(error, InputError::NothingDrawn { .. } | InputError::TooSmall { .. }), "{}", error
+                matches!(
+                    error,
+                    InputError::NothingDrawn { .. } | InputError::TooSmall { .. } | InputError::BackgroundNotPlain
+                ),
+                "{}", error
             ),
         }
     }

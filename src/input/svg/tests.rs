@@ -117,8 +117,10 @@ fn overlapping_pieces_are_united_and_loose_ones_reported() {
     // Two discs of radius r at distance r: the lens is (2 pi / 3 - sqrt(3) / 2) r^2.
     let lens = (2.0 * std::f64::consts::FRAC_PI_3 - 3.0_f64.sqrt() / 2.0) * 400.0;
     close(drawing.outline.area(), 800.0 * std::f64::consts::PI - lens, 2.0);
-    assert!(matches!(drawing.notes[..], [InputNote::PartLeftOut { place, area }]
-        if (place - Point::new(85.0, 85.0)).norm() < 1e-6 && (area - 100.0).abs() < 1e-6));
+    assert!(
+        matches!(drawing.notes[..], [InputNote::PartsLeftOut { count: 1, place, area }]
+        if (place - Point::new(85.0, 85.0)).norm() < 1e-6 && (area - 100.0).abs() < 1e-6)
+    );
 }
 
 #[test]
@@ -171,13 +173,27 @@ fn bad_files_are_refused_by_name() {
     assert!(matches!(refuse("<html/>"), InputError::NotSvg { .. }));
     let zipped = read_svg(&[0x1f, 0x8b, 8, 0], &SvgOptions::default()).expect_err("zipped");
     assert!(zipped.to_string().contains("compressed"), "{zipped}");
-    for body in [
-        "",
-        r#"<path d="M1 1L9 9"/>"#,
-        r#"<path d="M1 1H9V9Z" fill="none"/>"#,
-        "<text>a</text>",
-    ] {
+    for body in ["", r#"<path d="M1 1L9 9"/>"#, r#"<path d="M1 1H9V9Z" fill="none"/>"#] {
         assert!(matches!(refuse(&svg(body)), InputError::NoClosedShape), "{body}");
+    }
+    // The cause, not the symptom.
+    assert!(matches!(refuse(&svg("<text>a</text>")), InputError::OnlyText));
+    assert!(matches!(
+        refuse(&svg("<image href='a.png'/>")),
+        InputError::OnlyPictures
+    ));
+    let utf16: Vec<u8> = "\u{feff}<svg/>".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let latin1 = [
+        &br#"<?xml version="1.0" encoding="ISO-8859-1"?><svg><!--"#[..],
+        &[0xe4],
+        b"--></svg>",
+    ]
+    .concat();
+    for (bytes, name) in [(utf16, "UTF-16"), (latin1, "ISO-8859-1"), (vec![b'<', 0xe4], "Latin-1")] {
+        let refused = read_svg(&bytes, &SvgOptions::default())
+            .expect_err("another encoding")
+            .to_string();
+        assert!(refused.contains(name) && refused.contains("UTF-8"), "{refused}");
     }
     for number in ["NaN", "1e9", "1e300", "1e999"] {
         let error = refuse(&svg(&format!("<g>\n<path id='p' d='M0 0L{number} 0L5 5Z'/></g>")));
@@ -232,4 +248,80 @@ proptest! {
             Err(other) => prop_assert!(false, "{other}"),
         }
     }
+}
+
+#[test]
+fn a_background_is_left_out_whatever_it_is_drawn_with() {
+    let blob = r##"<circle cx="50" cy="50" r="30" fill="#c60"/>"##;
+    for background in [
+        r##"<rect width="100" height="100" fill="#fff"/>"##,
+        r#"<style>.paper{fill:#eee}</style><rect class="paper" width="100%" height="100%"/>"#,
+        r#"<g id="layer1"><path d="M-1-1H101V101H-1Z" fill="beige"/></g>"#,
+        r#"<rect width="100" height="60" fill="skyblue"/><rect y="60" width="100" height="40" fill="green"/>"#,
+    ] {
+        let drawing = read(&svg(&format!("{background}{blob}")));
+        close(drawing.outline.area(), std::f64::consts::PI * 900.0, 2.0);
+        assert_eq!(drawing.notes, [InputNote::BackgroundLeftOut], "{background}");
+        // It is neither in the pixels nor among the curves.
+        assert_eq!(drawing.picture.pixels[0], [0; 4]);
+        assert_eq!(drawing.art.map(|art| art.elements.len()), Some(1));
+    }
+    // Alone it is the drawing, which is told.
+    let whole = read(&svg(r#"<rect width="100" height="100"/>"#));
+    assert_eq!(
+        (whole.outline.area(), &whole.notes[..]),
+        (1e4, &[InputNote::FillsCanvas][..])
+    );
+    // What does not cover the page is none, and neither is what an element is asked for on.
+    assert!(
+        read(&svg(&format!(r#"<rect width="100" height="90" fill="red"/>{blob}"#)))
+            .notes
+            .is_empty()
+    );
+}
+
+#[test]
+fn masks_cut_by_what_they_let_through() {
+    let masked = |kind: &str, mask: &str| {
+        read(&svg(&format!(
+            r#"<mask id="m" style="mask-type:{kind}" maskUnits="userSpaceOnUse" x="0" y="0" width="100" height="100">{mask}</mask>
+            <g mask="url(#m)"><rect width="100" height="100" fill="teal"/></g>"#
+        )))
+        .outline
+    };
+    let disc = r#"<circle cx="50" cy="50" r="30" fill="gray"/>"#;
+    close(masked("alpha", disc).area(), std::f64::consts::PI * 900.0, 2.0);
+    let light =
+        r#"<circle cx="50" cy="50" r="30" fill="white"/><rect x="40" y="40" width="20" height="20" fill="black"/>"#;
+    let cut = masked("luminance", light);
+    assert_eq!(cut.holes().len(), 1);
+    close(cut.area(), std::f64::consts::PI * 900.0 - 400.0, 2.0);
+}
+
+#[test]
+fn variables_have_their_values() {
+    let colour = |text: &str| {
+        let picture = read(text).picture;
+        picture.pixels[picture.width * (picture.height / 2) + picture.width / 2]
+    };
+    let square = |style: &str, fill: &str| {
+        svg(&format!(
+            r#"<style>{style}</style><path fill="{fill}" d="M9 9H90V90H9Z"/>"#
+        ))
+    };
+    let red = [204, 51, 51, 255];
+    assert_eq!(colour(&square(":root{--c:#c33}", "var(--c, #3a3)")), red);
+    assert_eq!(colour(&square("", "var(--c, #c33)")), red);
+    assert_eq!(colour(&square(":root{--a:var(--b);--b:#c33}", "var(--a)")), red);
+    assert_eq!(
+        colour(&square(":root{--c:#c33} .dark{--c:#000}", "var(--c, rgb(1, 2, 3))")),
+        red
+    );
+    let text = svg(r#"<path fill="var(--x)" d="M9 9H90V90H9Z"/><path d="M9 9H40V40H9Z"/>"#);
+    assert_eq!(
+        read(&text).notes,
+        [InputNote::VariablesUnknown {
+            names: vec!["--x".to_owned()]
+        }]
+    );
 }

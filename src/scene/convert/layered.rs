@@ -192,6 +192,7 @@ impl Reader<'_> {
                 Extent::Everything
             },
             element,
+            reading: self.reading_of(written, &scene.input.reading)?,
             facing: Facing::AsDrawn,
         })))
     }

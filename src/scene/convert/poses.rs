@@ -5,19 +5,24 @@ use std::path::PathBuf;
 
 use toml::{Spanned, Value};
 
-use super::{Checked, Reader};
+use super::{Checked, Reader, WrittenReading};
 use crate::input::Extent;
 use crate::pipeline::Facing;
 use crate::scene::error::SceneProblem;
 use crate::scene::file::PoseTable;
-use crate::scene::settings::{DrawnSource, PoseSource, ScenePose};
+use crate::scene::settings::{DrawnSource, PoseSource, ReadingSettings, ScenePose};
 use crate::scene::source;
 
 /// The most whole turns that can be added to a pose.
 const MOST_TURNS: i64 = 1000;
 
 impl Reader<'_> {
-    pub(super) fn poses(&self, tables: &[Spanned<PoseTable>], layers: &[String]) -> Checked<Vec<ScenePose>> {
+    pub(super) fn poses(
+        &self,
+        tables: &[Spanned<PoseTable>],
+        layers: &[String],
+        reading: &ReadingSettings,
+    ) -> Checked<Vec<ScenePose>> {
         if tables.is_empty() {
             return Err(self.fail(self.text.len(), SceneProblem::NoPose));
         }
@@ -35,7 +40,7 @@ impl Reader<'_> {
         let names: Vec<String> = tables.iter().map(|t| t.get_ref().name.get_ref().clone()).collect();
         let mut poses: Vec<ScenePose> = Vec::new();
         for (index, table) in tables.iter().enumerate() {
-            let pose = self.pose(table, index, &names, layers, poses.first().map(|p| p.at.len()))?;
+            let pose = self.pose(table, index, &names, layers, poses.first().map(|p| p.at.len()), reading)?;
             let at = table.get_ref().name.span().start;
             if pose.name.is_empty() || poses.iter().any(|p| p.name == pose.name) {
                 return Err(self.fail(
@@ -69,13 +74,14 @@ impl Reader<'_> {
         names: &[String],
         layers: &[String],
         dimension: Option<usize>,
+        reading: &ReadingSettings,
     ) -> Checked<ScenePose> {
         let written = table.get_ref();
         let name = written.name.get_ref().clone();
         let source = match &written.deform_of {
             _ if !layers.is_empty() => PoseSource::Layered,
             Some(of) => PoseSource::Deformed(self.deformed(written, of, names)?),
-            None => PoseSource::Drawn(self.drawn(written)?),
+            None => PoseSource::Drawn(self.drawn(written, reading)?),
         };
         let at = match &written.at {
             Some(at) => self.place(at, &format!("`at` of pose '{name}'"), dimension)?,
@@ -101,7 +107,18 @@ impl Reader<'_> {
         })
     }
 
-    fn drawn(&self, written: &PoseTable) -> Checked<DrawnSource> {
+    /// How the drawing of a pose is read, if it is not as `usual`.
+    pub(super) fn reading_of(&self, written: &PoseTable, usual: &ReadingSettings) -> Checked<ReadingSettings> {
+        let keys = WrittenReading {
+            figure: &written.figure,
+            gap: &written.gap,
+            paper: &written.paper,
+            threshold: &written.threshold,
+        };
+        self.reading(&keys, &format!("pose '{}':", written.name.get_ref()), usual)
+    }
+
+    fn drawn(&self, written: &PoseTable, reading: &ReadingSettings) -> Checked<DrawnSource> {
         let name = written.name.get_ref();
         if let Some(handles) = &written.handles {
             return Err(self.fail(
@@ -129,6 +146,7 @@ impl Reader<'_> {
             line: self.line(source.span().start),
             element,
             extent: Extent::Everything,
+            reading: self.reading_of(written, reading)?,
             facing: if written.mirror == Some(true) {
                 Facing::Mirrored
             } else {

@@ -38,6 +38,9 @@ fn every_key_of_the_contract_is_known() {
 version = 1
 reference = "a"
 [input]
+figure = "lines"
+gap = 0.02
+paper = "clear"
 holes = "fill"
 threshold = 0.4
 [mesh]
@@ -61,6 +64,8 @@ name = "a"
 source = "a.png"
 at = [0, 0]
 mirror = true
+figure = "background"
+threshold = 0.3
 turns = -1
 [[pose]]
 name = "b"
@@ -91,6 +96,13 @@ keys = [ { time = 0, at = [0, 0] }, { time = 2.0, at = [1, 1] } ]
         .map(|(_, drawing)| drawing)
         .collect();
     assert_eq!((drawings[0].facing, scene.poses[0].turns), (Facing::Mirrored, -1));
+    // A pose says what differs from [input].
+    let reading = scene.input.reading;
+    assert_eq!((reading.figure, reading.paper), (FigureRule::Lines, PaperRule::Clear));
+    assert_eq!((reading.gap, reading.threshold), (0.02, 0.4));
+    assert_eq!(drawings[0].reading.figure, FigureRule::Background);
+    assert_eq!((drawings[0].reading.gap, drawings[0].reading.threshold), (0.02, 0.3));
+    assert_eq!(drawings[1].reading, reading);
     assert_eq!(drawings[1].element.as_deref(), Some("body"));
     assert_eq!(scene.landmarks[0].at, vec![None, Some(Point::new(12.0, 4.5))]);
     assert_eq!(scene.animation.background, Background::Colour([255, 0, 0, 128]));
