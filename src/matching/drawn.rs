@@ -110,6 +110,9 @@ impl Task<'_> {
             self.even_table(COARSE_STRIDE, DIRECTION_COST),
             self.even_table(FINE_STRIDE, DIRECTION_COST),
         );
+        // Alone, the upright match is to be as upright as it can; among others it is a beginning.
+        let upright_fine = (most == 1).then(|| self.even_table(FINE_STRIDE, UPRIGHT_COST));
+        let fine = upright_fine.unwrap_or(fine);
         let apart = ((APART * coarse.row_count() as f64).round() as usize).max(1);
         let upright = cheapest_paths(&self.even_table(COARSE_STRIDE, UPRIGHT_COST), apart, 1);
         let others = if most > 1 {

@@ -239,13 +239,15 @@ impl<'a> Pair<'a> {
         beginnings: &[RingPairs],
     ) -> Result<(Vec<Point>, f64, usize), RegistrationError> {
         let rigid = Rigid::new(self.lattice, 1.0);
+        let here = Window::here();
+        let image = ByteImage::new(&self.pose.blurred(LEVELS[0].deviation_px), here.reach);
         let mut best: Option<(f64, Vec<Point>, usize)> = None;
         for (number, beginning) in beginnings.iter().enumerate() {
-            let mut places = self.begun(&rigid, beginning)?;
+            // Compared as the outlines have them, before they are stiffened: what is squashed is no worse than what is turned.
+            let places = self.begun(&rigid, beginning)?;
             let difference = if beginnings.len() > 1 {
-                let fits;
-                (places, fits) = self.level(&LEVELS[0], &templates[0], &rigid, places)?;
-                mean_residual(&fits)
+                let rotations = rigid.rotations(&places, 1);
+                mean_residual(&templates[0].fits(&image, &places, &rotations, &here, 1.0))
             } else {
                 0.0
             };
@@ -254,13 +256,12 @@ impl<'a> Pair<'a> {
                 best = Some((difference, places, number));
             }
         }
-        let Some((_, mut places, number)) = best else {
+        let Some((_, places, number)) = best else {
             return Err(RegistrationError::NoFigure);
         };
+        let mut places = self.stiffened(&rigid, &places)?;
         let mut residual = 0.0;
-        // Where there was a choice, the first level is done.
-        let done = usize::from(beginnings.len() > 1);
-        for (level, template) in LEVELS.iter().zip(templates).skip(done) {
+        for (level, template) in LEVELS.iter().zip(templates) {
             let fits;
             (places, fits) = self.level(level, template, &rigid, places)?;
             residual = mean_residual(&fits);
@@ -277,14 +278,18 @@ impl<'a> Pair<'a> {
             })
             .collect();
         let pins: Vec<[Point; 2]> = self.pins.iter().map(|pin| [pin.from, pin.to]).collect();
-        let places = spread(self.lattice, rigid, 1.0, &rings, &pins)?;
-        let (mut wanted, mut trust) = (places.clone(), vec![Matrix::identity(); places.len()]);
-        self.pin(rigid, &places, &mut wanted, &mut trust);
+        Ok(spread(self.lattice, rigid, 1.0, &rings, &pins)?)
+    }
+
+    /// The vertices moved a little towards a rigid form, so that folds come out.
+    fn stiffened(&self, rigid: &Rigid, places: &[Point]) -> Result<Vec<Point>, RegistrationError> {
+        let (mut wanted, mut trust) = (places.to_vec(), vec![Matrix::identity(); places.len()]);
+        self.pin(rigid, places, &mut wanted, &mut trust);
         let targets = Targets {
             places: &wanted,
             trust: &trust,
         };
-        Ok(rigid.solve(&places, &targets, FIRST_STIFFNESS, FIRST_ITERATIONS)?)
+        Ok(rigid.solve(places, &targets, FIRST_STIFFNESS, FIRST_ITERATIONS)?)
     }
 
     /// Joins the targets with those that pins give the vertices next to them, each by its trust.

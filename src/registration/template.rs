@@ -180,6 +180,11 @@ impl Window {
             step,
         }
     }
+
+    /// No search: where it is.
+    pub(super) fn here() -> Self {
+        Self::new(0.0, 1.0)
+    }
 }
 
 /// The points of a square grid within a disc around the origin.
