@@ -27,6 +27,7 @@ fn curved() -> Vec<Subpath> {
     vec![open, closed]
 }
 
+#[cfg(any(feature = "lyon", feature = "tiny_skia"))]
 fn assert_near(a: &[Subpath], b: &[Subpath], tolerance: f64) {
     assert_eq!(a.len(), b.len());
     for (a, b) in a.iter().zip(b) {
