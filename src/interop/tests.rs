@@ -86,7 +86,7 @@ fn chords_keep_within_the_tolerance() {
 
 #[test]
 fn frames_give_their_shapes_from_back_to_front() {
-    use crate::render::drawing::VectorGroup;
+    use crate::render::VectorGroup;
     let shape = |id: &str| VectorShape::of_subpaths(id, curved());
     let mut frame = VectorFrame::of_shapes([8, 8], [shape("a"), shape("d")]);
     let group = VectorGroup {
