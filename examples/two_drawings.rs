@@ -1,4 +1,4 @@
-//! Two drawings in memory become an animated GIF in memory: no file is read, no scene is written. `two_drawings > leaf.gif`
+//! Two drawings in memory become an animated GIF in memory: no file is read, no scene is written.
 
 use inbetween::animation::Animation;
 use inbetween::export::{Backdrop, GifWriter, Palette, Repetition};
@@ -34,5 +34,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut writer = GifWriter::new(&mut gif, SIZE, 24.0, colours, Backdrop::Clear, Repetition::Forever)?;
     frames.iter().try_for_each(|frame| writer.add(frame))?;
     writer.finish()?;
-    Ok(std::io::Write::write_all(&mut std::io::stdout(), &gif)?)
+    let file = std::env::args().nth(1).ok_or("usage: two_drawings FILE.gif")?;
+    Ok(std::fs::write(file, gif)?)
 }

@@ -136,7 +136,7 @@ fn handles_that_cannot_be_are_refused_by_name() {
     ] {
         let workshop = with_copies(&copy("bent", "tall", "[0, 1]", handles));
         let message = workshop.fails(&["map", "scene.toml", "-o", "m.json"], 1);
-        for word in ["scene.toml", "'bent' (line 14)", "copy of 'tall'", words] {
+        for word in ["scene.toml:14", "'bent'", "copy of 'tall'", words] {
             assert!(message.contains(word), "'{word}' is not in: {message}");
         }
         assert!(!workshop.path("m.json").exists());

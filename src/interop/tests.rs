@@ -27,6 +27,7 @@ fn curved() -> Vec<Subpath> {
     vec![open, closed]
 }
 
+#[cfg(any(feature = "lyon", feature = "tiny_skia"))]
 fn assert_near(a: &[Subpath], b: &[Subpath], tolerance: f64) {
     assert_eq!(a.len(), b.len());
     for (a, b) in a.iter().zip(b) {
@@ -85,7 +86,7 @@ fn chords_keep_within_the_tolerance() {
 
 #[test]
 fn frames_give_their_shapes_from_back_to_front() {
-    use crate::render::drawing::VectorGroup;
+    use crate::render::VectorGroup;
     let shape = |id: &str| VectorShape::of_subpaths(id, curved());
     let mut frame = VectorFrame::of_shapes([8, 8], [shape("a"), shape("d")]);
     let group = VectorGroup {

@@ -6,7 +6,7 @@ use super::{PathOutlineError, Segment};
 use crate::input::Subpath;
 use crate::math::{NotSingle, SinglePrecision};
 use crate::outline::Outline;
-use crate::render::drawing::VectorShape;
+use crate::render::VectorShape;
 
 impl Subpath {
     /// A path of several pieces, in single precision; `None` where tiny-skia has no path: without pieces, or all in one point.

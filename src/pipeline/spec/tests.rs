@@ -140,7 +140,7 @@ fn an_update_runs_what_differs_and_has_the_shapes_of_a_new_build() {
         ),
         (|s| s.layers[0].landmarks[0].at[1] = at(40.0, 36.0), false, true),
         (
-            |s| s.layers[0].poses[1] = PoseSpec::drawn("long", letter(20, 40)),
+            |s| s.layers[0].poses[1] = PoseSpec::drawn("long", letter(24, 90)),
             false,
             false,
         ),
