@@ -39,12 +39,16 @@ fn least_inside(file: &Path) -> u8 {
 #[test]
 fn a_hole_that_one_pose_has_is_covered_by_the_mesh_and_written_as_seen() {
     let workshop = disc_and_ring();
-    workshop.runs(&["map", "scene.toml", "-o", "mapping.json"]);
+    workshop.succeeds(&["map", "scene.toml", "-o", "mapping.json"]);
     let text = std::fs::read_to_string(workshop.path("mapping.json")).expect("a mapping");
     let mapping = Mapping::from_json(&text).expect("a mapping");
     mapping.check().expect("valid");
     assert_eq!(mapping.rings.len(), 1);
-    let open: Vec<usize> = mapping.outlines.iter().map(|outline| outline.openings().len()).collect();
+    let open: Vec<usize> = mapping
+        .outlines
+        .iter()
+        .map(|outline| outline.openings().len())
+        .collect();
     assert_eq!(open, [0, 1]);
     assert!(mapping.outlines.iter().all(|outline| outline.holes().is_empty()));
     // What was written is what is read, the opening among the holes.
@@ -55,7 +59,16 @@ fn a_hole_that_one_pose_has_is_covered_by_the_mesh_and_written_as_seen() {
 fn it_is_open_at_its_pose_closed_at_the_other_and_half_open_between() {
     let workshop = disc_and_ring();
     let alpha = |weights: &str| {
-        workshop.runs(&["frame", "scene.toml", "--weights", weights, "--size", "120x120", "-o", "frame.png"]);
+        workshop.succeeds(&[
+            "frame",
+            "scene.toml",
+            "--weights",
+            weights,
+            "--size",
+            "120x120",
+            "-o",
+            "frame.png",
+        ]);
         least_inside(&workshop.path("frame.png"))
     };
     assert_eq!(alpha("1,0"), 255);
