@@ -210,24 +210,42 @@ fn a_new_scene_renders() {
 }
 
 #[test]
-fn drawings_that_do_not_fit_one_another_still_make_a_scene() {
+fn a_new_scene_says_what_was_taken_and_refuses_what_cannot_be() {
     let workshop = two();
-    // A ring has a hole, the others have none.
+    // A ring has a hole, the others have none; a speck is left out.
     workshop.picture("ring.png", |x, y| {
         let away = (i64::from(x) - 20).abs().max((i64::from(y) - 20).abs());
-        [0, 0, 0, if (6..15).contains(&away) { 255 } else { 0 }]
+        [
+            0,
+            0,
+            0,
+            if (6..15).contains(&away) || (x, y) == (1, 1) {
+                255
+            } else {
+                0
+            },
+        ]
     });
     let output = workshop.run(&["new", "cat", "tall.png", "wide.png", "ring.png"]);
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(
-        output.status.success() && message.contains("evenly on a circle") && message.contains("holes"),
+        output.status.success() && message.contains("pose 'ring': 1 speck"),
         "{message}"
     );
-    let text = std::fs::read_to_string(workshop.path("cat/scene.toml")).expect("a scene");
+    assert!(!message.contains("circle"), "{message}");
+
+    workshop.picture("blank.png", |_, _| [0; 4]);
+    let message = workshop.fails(&["new", "dog", "tall.png", "blank.png"], 1);
     assert!(
-        text.contains("at = [-1.0, 0.0]") && text.contains("at = [0.5, 0.866]"),
-        "{text}"
+        message.contains("'blank'") && message.contains("no drawing"),
+        "{message}"
     );
+    assert!(!workshop.path("dog").exists());
+
+    // Again, with other drawings.
+    workshop.succeeds(&["new", "cat", "wide.png", "--force"]);
+    let text = std::fs::read_to_string(workshop.path("cat/scene.toml")).expect("a scene");
+    assert_eq!(text.matches("[[pose]]").count(), 1, "{text}");
 }
 
 #[test]

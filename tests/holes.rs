@@ -39,7 +39,7 @@ fn least_inside(file: &Path) -> u8 {
 #[test]
 fn a_hole_that_one_pose_has_is_covered_by_the_mesh_and_written_as_seen() {
     let workshop = disc_and_ring();
-    workshop.runs(&["map", "scene.toml", "-o", "mapping.json"]);
+    workshop.succeeds(&["map", "scene.toml", "-o", "mapping.json"]);
     let text = std::fs::read_to_string(workshop.path("mapping.json")).expect("a mapping");
     let mapping = Mapping::from_json(&text).expect("a mapping");
     mapping.check().expect("valid");
@@ -59,7 +59,7 @@ fn a_hole_that_one_pose_has_is_covered_by_the_mesh_and_written_as_seen() {
 fn it_is_open_at_its_pose_closed_at_the_other_and_half_open_between() {
     let workshop = disc_and_ring();
     let alpha = |weights: &str| {
-        workshop.runs(&[
+        workshop.succeeds(&[
             "frame",
             "scene.toml",
             "--weights",

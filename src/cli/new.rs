@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use inbetween::export::PendingFile;
-use inbetween::scene::{NewPose, Scene, SceneBuildError, scene_text};
+use inbetween::pipeline::{automatic_places, map_layer};
+use inbetween::scene::{NewPose, Scene, scene_text};
 use inbetween::weights::arrange;
 
 use super::{Failure, Verbosity};
@@ -16,8 +17,8 @@ const SUFFIXES: [&str; 7] = ["png", "jpg", "jpeg", "webp", "gif", "bmp", "svg"];
 ///
 /// Writes DIR/scene.toml with one pose a drawing, named after its file. The drawings are mapped onto one another to lay the poses
 /// out: those that are alike come near one another. They are taken in the order of the numbers in their names. If they cannot be mapped, the poses lie evenly on a circle and
-/// a note says why. Drawings that are not in DIR are copied into it, so that the folder is complete. An existing scene
-/// file is never overwritten.
+/// a note says why. What was taken for the figure is said for every drawing; one that cannot be used is refused. Drawings that are not in
+/// DIR are copied into it, so that the folder is complete. An existing scene file is only overwritten with --force.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  inbetween new cat stand.png run.png jump.png\n  inbetween render cat/scene.toml -o cat.gif"
@@ -28,6 +29,9 @@ pub(crate) struct Arguments {
     /// The drawings: PNG, JPEG, WebP, GIF, BMP or SVG
     #[arg(required = true, value_name = "POSE")]
     poses: Vec<PathBuf>,
+    /// Write over the scene file and the drawings of an earlier run
+    #[arg(long)]
+    force: bool,
 }
 
 /// A drawing that has to be copied, and where to.
@@ -40,9 +44,9 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     let scene_file = arguments.dir.join("scene.toml");
     let is_new = !arguments.dir.exists();
     // Everything is checked before anything is written.
-    if scene_file.exists() {
+    if scene_file.exists() && !arguments.force {
         return Err(anyhow::anyhow!(
-            "{} exists; remove it first or choose another folder",
+            "{} exists; write over it with --force, remove it first or choose another folder",
             scene_file.display()
         )
         .into());
@@ -50,9 +54,10 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     let (mut poses, copies) = plan(arguments)?;
     std::fs::create_dir_all(&arguments.dir)
         .with_context(|| format!("cannot make the folder {}", arguments.dir.display()))?;
+    let replaced: Vec<bool> = copies.iter().map(|copy| copy.target.exists()).collect();
     let written = write(&copies, &scene_file, &mut poses, verbosity);
     if written.is_err() {
-        for copy in &copies {
+        for (copy, _) in copies.iter().zip(replaced).filter(|(_, replaced)| !replaced) {
             let _ = std::fs::remove_file(&copy.target);
         }
         if is_new {
@@ -99,7 +104,7 @@ fn plan(arguments: &Arguments) -> anyhow::Result<(Vec<NewPose>, Vec<Copy>)> {
             None => {
                 let name = file_name(path)?;
                 let target = arguments.dir.join(&name);
-                if target.exists() || copies.iter().any(|copy| copy.target == target) {
+                if target.exists() && !arguments.force || copies.iter().any(|copy| copy.target == target) {
                     bail!(
                         "{} would overwrite {}; rename one of the drawings",
                         path.display(),
@@ -136,14 +141,23 @@ fn write(copies: &[Copy], scene_file: &Path, poses: &mut [NewPose], verbosity: V
     for copy in copies {
         PendingFile::write_whole(&copy.target, &copy.bytes)?;
     }
-    let places = places(scene_file, poses).unwrap_or_else(|error| {
-        verbosity.note(&format!(
-            "note: the poses are laid out evenly on a circle, because the drawings could not be mapped: {error}"
-        ));
-        even_circle(poses.len())
-    });
+    let scene = Scene::parse(&scene_text(poses), scene_file)?;
+    let places = match map_layer(&scene.layer_spec(0)?) {
+        Ok((mapping, report)) => {
+            for note in &report.notes {
+                verbosity.note(&format!("note: {note}"));
+            }
+            automatic_places(&mapping)
+        }
+        Err(error) => {
+            verbosity.note(&format!(
+                "note: the poses are laid out evenly on a circle, because the drawings could not be mapped: {error}"
+            ));
+            even_circle(poses.len())
+        }
+    };
     for (pose, place) in poses.iter_mut().zip(places) {
-        pose.at = Some(place);
+        pose.at = place.first_chunk().copied();
     }
     Ok(PendingFile::write_whole(scene_file, scene_text(poses).as_bytes())?)
 }
@@ -179,17 +193,11 @@ fn natural_key(path: &Path) -> (Vec<NamePiece>, PathBuf) {
     (pieces, path.to_owned())
 }
 
-/// Places by how far the drawings are from one another.
-fn places(scene_file: &Path, poses: &[NewPose]) -> Result<Vec<[f64; 2]>, SceneBuildError> {
-    let scene = Scene::parse(&scene_text(poses), scene_file)?.with_automatic_places()?;
-    Ok(scene.poses.iter().map(|pose| [pose.at[0], pose.at[1]]).collect())
-}
-
 /// Places in order around a circle: as if each drawing were one step from the next, and the last from the first.
-fn even_circle(count: usize) -> Vec<[f64; 2]> {
+fn even_circle(count: usize) -> Vec<Vec<f64>> {
     let steps = |a: usize, b: usize| a.abs_diff(b).min(count - a.abs_diff(b)) as f64;
     let distances: Vec<Vec<f64>> = (0..count).map(|a| (0..count).map(|b| steps(a, b)).collect()).collect();
-    arrange(&distances)
+    arrange(&distances).into_iter().map(Vec::from).collect()
 }
 
 fn file_name(path: &Path) -> anyhow::Result<String> {

@@ -231,21 +231,22 @@ impl Paper {
         std::array::from_fn(|k| (1.0 - v) * ((1.0 - u) * a[k] + u * b[k]) + v * ((1.0 - u) * c[k] + u * d[k]))
     }
 
-    /// Whether the mean colour of a region of full-size pixels is that of the background along the border. Grain averages out in large
-    /// regions, so that whites are told apart that single pixels do not tell.
+    /// Whether the median colour of a region of full-size pixels is that of the background along the border. Grain cancels out in large
+    /// regions, so that whites are told apart that single pixels do not tell; the soft rim of the region does not count.
     pub(super) fn is_seen_in(&self, image: &RgbaImage, region: &[u32]) -> bool {
         let width = image.width() as usize;
-        let mut sum = [0.0_f64; 3];
-        for &at in region {
+        let mut residuals: [Vec<f32>; 3] = Default::default();
+        for &at in region.iter().step_by(region.len().div_ceil(MOST_SAMPLES).max(1)) {
             let at = at as usize;
             let place = (at / width / self.scale) * self.width + at % width / self.scale;
             let expected = polynomial_at(&self.polynomial, monomials(self.width, self.height, place));
-            for ((total, channel), expected) in sum.iter_mut().zip(&image.as_raw()[4 * at..]).zip(expected) {
-                *total += f64::from(f32::from(*channel) * STEP - expected);
+            let pixel = &image.as_raw()[4 * at..];
+            for ((residuals, channel), expected) in residuals.iter_mut().zip(pixel).zip(expected) {
+                residuals.push(f32::from(*channel) * STEP - expected);
             }
         }
-        let mean = sum.map(|total| (total / region.len().max(1) as f64) as f32);
-        largest(mean) <= UNEVEN * self.unevenness
+        let middle = residuals.each_mut().map(|values| median(values));
+        largest(middle) <= UNEVEN * self.unevenness
     }
 
     /// How light it is on average, from 0 to 1.
