@@ -116,7 +116,7 @@ fn a_line_back_to_where_it_began_is_refused_by_name_and_pose() {
         at = { tall = [[12, 20], [20, 16], [20, 24], [12, 20]], wide = [[4, 20], [20, 16], [20, 24], [4, 20]] }\n";
     workshop.two_poses("[0, 0]", "[1, 0]", line);
     let message = workshop.fails(&["map", "scene.toml", "-o", "mapping.json"], 1);
-    for word in ["'loop'", "line 11", "'tall'", "same place"] {
+    for word in ["'loop'", "scene.toml:11", "'tall'", "same place"] {
         assert!(message.contains(word), "'{word}' is not in: {message}");
     }
 }
@@ -132,11 +132,11 @@ fn lines_that_cannot_be_are_refused_with_their_names_and_lines() {
     for (more, words) in [
         (
             line("knot", "[[15, 10], [25, 10], [25, 15], [18, 8]]"),
-            ["'knot'", "line 11", "'tall'", "crosses itself"],
+            ["'knot'", "scene.toml:11", "'tall'", "crosses itself"],
         ),
         (
             line("arm", "[[15, 10], [38, 10], [25, 15]]"),
-            ["'arm'", "line 11", "'tall'", "leaves it"],
+            ["'arm'", "scene.toml:11", "'tall'", "leaves it"],
         ),
         (
             format!(
