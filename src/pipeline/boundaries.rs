@@ -60,7 +60,9 @@ impl Boundaries {
             Some(before) => before.appearances.clone(),
             None => super::drawn::appearances(drawings),
         };
-        let is_drawn = appearances.iter().any(Appearance::is_drawn);
+        // Rims of holes turn with the outline around them only where the inside is looked at, too.
+        let has_holes = outlines.iter().any(|outline| !outline.holes().is_empty());
+        let is_drawn = has_holes || appearances.iter().any(Appearance::is_drawn);
         let (matched, alone, guide) = if is_drawn {
             let options = MatchOptions {
                 reference: layer.reference,

@@ -1,5 +1,7 @@
 //! All poses registered to the reference.
 
+use std::f64::consts::FRAC_PI_2;
+
 use rayon::prelude::*;
 
 use super::lattice::Lattice;
@@ -7,7 +9,7 @@ use super::outline::{RingPair, spread};
 use super::rigid::{Rigid, Targets};
 use super::template::{Fit, MOST_DIFFERENCE, Template, Window};
 use crate::appearance::{Appearance, ByteImage, PIXELS_PER_UNIT};
-use crate::math::{Matrix, Point};
+use crate::math::{Matrix, Point, angle, point};
 use crate::solve::SolveError;
 
 /// The lattice's spacing, in figure units.
@@ -58,6 +60,9 @@ const FIRST_STIFFNESS: f64 = 30.0;
 const FIRST_ITERATIONS: usize = 10;
 /// A beginning is taken instead of one that turns the drawing less if its drawings differ by less than this share, less this difference.
 const CLEARLY: (f64, f64) = (0.95, 0.003);
+/// The share by which a difference counts more for each radian that the figure is turned, up to a quarter turn: drawings stand upright, and one
+/// that was really turned differs several times as much if it is taken to stand.
+const TURNED: f64 = 0.25;
 /// Trust falls by a factor e when the best place in the window differs by this share of [`MOST_DIFFERENCE`].
 const DOUBT: f32 = 0.25;
 /// The trust in a pair of points that is certain and in one that is likely, beside some 100 of a vertex whose place is clear.
@@ -247,7 +252,8 @@ impl<'a> Pair<'a> {
             let places = self.begun(&rigid, beginning)?;
             let difference = if beginnings.len() > 1 {
                 let rotations = rigid.rotations(&places, 1);
-                mean_residual(&templates[0].fits(&image, &places, &rotations, &here, 1.0))
+                let fits = templates[0].fits(&image, &places, &rotations, &here, 1.0);
+                mean_residual(&fits) * (1.0 + TURNED * self.turn_rad(&places).min(FRAC_PI_2))
             } else {
                 0.0
             };
@@ -279,6 +285,18 @@ impl<'a> Pair<'a> {
             .collect();
         let pins: Vec<[Point; 2]> = self.pins.iter().map(|pin| [pin.from, pin.to]).collect();
         Ok(spread(self.lattice, rigid, 1.0, &rings, &pins)?)
+    }
+
+    /// The absolute angle by which the figure is turned as a whole, in radians.
+    fn turn_rad(&self, places: &[Point]) -> f64 {
+        let count = places.len().max(1) as f64;
+        let middle = |points: &[Point]| points.iter().sum::<Point>() / count;
+        let (from, to) = (middle(&self.lattice.points), middle(places));
+        let pairs = self.lattice.points.iter().zip(places);
+        let turn: Point = pairs
+            .map(|(a, b)| Point::new((a - from).dot(&(b - to)), point::cross(a - from, b - to)))
+            .sum();
+        angle::between(Point::new(1.0, 0.0), turn).abs()
     }
 
     /// The vertices moved a little towards a rigid form, so that folds come out.
