@@ -33,6 +33,8 @@ const TIE_MARGIN: (f32, f32) = (1.003, 0.01);
 /// What a radian of rotation of the whole drawing costs, as much as an elastic difference: between drawings of a thing that was squashed from tall
 /// to wide there is half of this or less, between those of an animal in two postures more than three times as much.
 const TURN_COST: f64 = 0.3;
+/// Below this cost drawings are alike by a match: the elastic cost of a thing and the same thing squashed.
+const ALIKE_COST: f32 = 0.45;
 /// A match is taken for staying upright if it turns the drawing by so much less than the cheapest, in radians.
 const UPRIGHT_RAD: f64 = 0.35;
 /// Rows between two samples of the elastic match.
@@ -206,17 +208,20 @@ impl Task<'_> {
     }
 
     /// The cheapest match; among those that cost nearly the same, the one that turns the drawing least from what is expected. One that costs
-    /// more is taken instead if it turns the drawing so much less that this is worth more.
+    /// more is taken instead if the drawings are alike by it, too, and it turns them so much less that this is worth more.
     ///
     /// Only a shape that is nearly symmetric under a rotation has such ties, so that turning a drawing changes nothing for any other.
     fn choose(&self, candidates: Vec<CoarseMatch>) -> Option<CoarseMatch> {
         let least = candidates.iter().map(|c| c.cost).fold(f32::INFINITY, f32::min);
         let ties = (TIE_MARGIN.0 * least + TIE_MARGIN.1).max(SAMPLING_COST);
-        let cost = |candidate: &CoarseMatch| {
+        let total = |candidate: &CoarseMatch| {
             let cost = if candidate.cost <= ties { least } else { candidate.cost };
             f64::from(cost) + TURN_COST * self.rotation(candidate)
         };
-        candidates.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)))
+        candidates
+            .into_iter()
+            .filter(|candidate| candidate.cost <= ties.max(ALIKE_COST))
+            .min_by(|a, b| total(a).total_cmp(&total(b)))
     }
 
     /// The absolute angle, in radians, between the best-fitting rotation of the match from the model's first curve and what is expected.

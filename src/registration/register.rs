@@ -62,7 +62,7 @@ const FIRST_ITERATIONS: usize = 10;
 const CLEARLY: (f64, f64) = (0.95, 0.003);
 /// The share by which a difference counts more for each radian that the figure is turned, up to a quarter turn: drawings stand upright, and one
 /// that was really turned differs several times as much if it is taken to stand.
-const TURNED: f64 = 0.25;
+const TURNED: f64 = 0.1;
 /// Trust falls by a factor e when the best place in the window differs by this share of [`MOST_DIFFERENCE`].
 const DOUBT: f32 = 0.25;
 /// The trust in a pair of points that is certain and in one that is likely, beside some 100 of a vertex whose place is clear.
@@ -250,12 +250,16 @@ impl<'a> Pair<'a> {
         for (number, beginning) in beginnings.iter().enumerate() {
             // Compared as the outlines have them, before they are stiffened: what is squashed is no worse than what is turned.
             let places = self.begun(&rigid, beginning)?;
-            let difference = if beginnings.len() > 1 {
-                let rotations = rigid.rotations(&places, 1);
-                let fits = templates[0].fits(&image, &places, &rotations, &here, 1.0);
-                mean_residual(&fits) * (1.0 + TURNED * self.turn_rad(&places).min(FRAC_PI_2))
-            } else {
-                0.0
+            let differs = |places: &[Point]| {
+                let rotations = rigid.rotations(places, 1);
+                mean_residual(&templates[0].fits(&image, places, &rotations, &here, 1.0))
+            };
+            let difference = match self.affinely(beginning) {
+                Some(affine) if beginnings.len() > 1 => {
+                    let least = differs(&places).min(differs(&affine));
+                    least * (1.0 + TURNED * self.turn_rad(&places).min(FRAC_PI_2))
+                }
+                _ => 0.0,
             };
             let is_better = |least: f64| difference < CLEARLY.0 * least - CLEARLY.1;
             if best.as_ref().is_none_or(|(least, ..)| is_better(*least)) {
@@ -285,6 +289,25 @@ impl<'a> Pair<'a> {
             .collect();
         let pins: Vec<[Point; 2]> = self.pins.iter().map(|pin| [pin.from, pin.to]).collect();
         Ok(spread(self.lattice, rigid, 1.0, &rings, &pins)?)
+    }
+
+    /// The vertices moved by the affine map that comes nearest to outlines in correspondence: what is squashed as a whole is squashed inside, too,
+    /// which a rigid form does not say. `None` if the outlines have no area.
+    fn affinely(&self, beginning: &RingPairs) -> Option<Vec<Point>> {
+        let pairs: Vec<(Point, Point)> = (beginning.iter())
+            .flat_map(|(reference, pose)| reference.iter().zip(pose))
+            .map(|(a, b)| (self.reference.to_pixels(*a), self.pose.to_pixels(*b)))
+            .collect();
+        let count = pairs.len() as f64;
+        let from = pairs.iter().map(|(a, _)| a).sum::<Point>() / count;
+        let to = pairs.iter().map(|(_, b)| b).sum::<Point>() / count;
+        let (mut second, mut mixed) = (Matrix::zeros(), Matrix::zeros());
+        for (a, b) in &pairs {
+            second += (a - from) * (a - from).transpose();
+            mixed += (b - to) * (a - from).transpose();
+        }
+        let map = mixed * second.try_inverse()?;
+        Some(self.lattice.points.iter().map(|p| map * (p - from) + to).collect())
     }
 
     /// The absolute angle by which the figure is turned as a whole, in radians.
