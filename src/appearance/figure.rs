@@ -29,6 +29,8 @@ const FULL_COVERAGE: f32 = 1.0 / 3.0;
 const SEEN_DIFFERENCE: f32 = 0.05;
 const DRAWN_SHARE: f32 = 0.002;
 
+/// Alpha below which a pixel has no colour.
+const LEAST_ALPHA: f32 = 0.02;
 /// Blur, in working pixels, and the coverage under it that is only found some three of them away from the edge.
 const EDGE_BLUR_PX: f32 = 1.5;
 const INSIDE_COVERAGE: f32 = 0.985;
@@ -178,7 +180,7 @@ impl Appearance {
             if coverage[k] > 0.0 {
                 let (column, row) = (k % self.base.width, k / self.base.width);
                 let middle = self.to_source(Point::new(column as f64 + 0.5, row as f64 + 0.5));
-                let [l, a, b] = lab.of(sampler.on_white(middle));
+                let [l, a, b] = lab.of(sampler.colour(middle));
                 *lightness = l;
                 pixel[0] = l * LIGHTNESS_WEIGHT * coverage[k];
                 pixel[1] = a * COLOUR_WEIGHT * coverage[k];
@@ -212,8 +214,8 @@ impl<'a> PictureSampler<'a> {
         }
     }
 
-    /// The colour of the working pixel around a place of the source, in 0..1, over white.
-    fn on_white(&self, middle: Point) -> [f32; 3] {
+    /// The colour of the working pixel around a place of the source, in 0..1, without what shines through; white where there is none.
+    fn colour(&self, middle: Point) -> [f32; 3] {
         let centre = (middle - self.picture.origin) * self.picture.pixels_per_unit;
         let mut sum = [0.0; 4];
         for j in 0..self.count {
@@ -227,7 +229,10 @@ impl<'a> PictureSampler<'a> {
         }
         let scale = 1.0 / (255.0 * (self.count * self.count) as f32);
         let [r, g, b, alpha] = sum.map(|c| c * scale);
-        [r, g, b].map(|c| (c + 1.0 - alpha).clamp(0.0, 1.0))
+        if alpha < LEAST_ALPHA {
+            return [1.0; 3];
+        }
+        [r, g, b].map(|c| (c / alpha).clamp(0.0, 1.0))
     }
 
     /// The picture at a place in its own pixels; clear beyond its border.
