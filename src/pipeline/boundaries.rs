@@ -14,8 +14,10 @@ use crate::matching::{
 use crate::math::Point;
 use crate::outline::{Outline, Ring};
 
-/// How far corresponding vertices may drift apart where drawings say what corresponds, as a share of the deviation allowed.
+/// How far corresponding vertices may drift apart where drawings say what corresponds, as a share of the deviation allowed, and at least, as a
+/// fraction of the diagonal: less than that is not known of outlines that are drawn anew.
 const DRIFT_SHARE: f64 = 0.5;
+const LEAST_DRIFT: f64 = 0.01;
 
 /// The outlines matched and simplified, and what that was made of besides the drawings.
 #[derive(Debug)]
@@ -91,7 +93,7 @@ impl Boundaries {
         let alone = alone.map_err(refusal)?;
         // Where drawings say what corresponds, the mesh is held to it.
         let options = match (&guide, options.drift) {
-            (Some(_), None) => options.with_drift(DRIFT_SHARE * layer.mesh.simplify.tolerance),
+            (Some(_), None) => options.with_drift((DRIFT_SHARE * layer.mesh.simplify.tolerance).max(LEAST_DRIFT)),
             _ => options,
         };
         begins(Stage::Simplification);

@@ -60,6 +60,8 @@ const FIRST_STIFFNESS: f64 = 30.0;
 const FIRST_ITERATIONS: usize = 10;
 /// A beginning is taken instead of one that turns the drawing less if its drawings differ by less than this share, less this difference.
 const CLEARLY: (f64, f64) = (0.95, 0.003);
+/// The radius, in working pixels, of what is compared of a beginning at each vertex.
+const POINT_PX: f64 = 1.0;
 /// The share by which a difference counts more for each radian that the figure is turned, up to a quarter turn: drawings stand upright, and one
 /// that was really turned differs several times as much if it is taken to stand.
 const TURNED: f64 = 0.1;
@@ -175,6 +177,8 @@ pub fn register(
             )
         })
         .collect();
+    // Beginnings are compared point by point: patches are rigid, and would count what is squashed as different.
+    let points = Template::new(&lattice, &own.blurred(LEVELS[0].deviation_px), POINT_PX);
     let registered: Vec<Option<(Vec<Point>, f64, usize)>> = (0..appearances.len())
         .into_par_iter()
         .map(|pose| {
@@ -188,7 +192,7 @@ pub fn register(
                 &appearances[pose],
                 pins.get(pose).map_or(&[], Vec::as_slice),
             );
-            pair.registered(&templates, beginnings).map(Some)
+            pair.registered(&points, &templates, beginnings).map(Some)
         })
         .collect::<Result<_, RegistrationError>>()?;
     let chosen = (registered.iter())
@@ -240,6 +244,7 @@ impl<'a> Pair<'a> {
     /// The places of the vertices, how much the drawings still differ there, and from which beginning.
     fn registered(
         &self,
+        points: &Template,
         templates: &[Template],
         beginnings: &[RingPairs],
     ) -> Result<(Vec<Point>, f64, usize), RegistrationError> {
@@ -252,7 +257,7 @@ impl<'a> Pair<'a> {
             let places = self.begun(&rigid, beginning)?;
             let differs = |places: &[Point]| {
                 let rotations = rigid.rotations(places, 1);
-                mean_residual(&templates[0].fits(&image, places, &rotations, &here, 1.0))
+                mean_residual(&points.fits(&image, places, &rotations, &here, 1.0))
             };
             let difference = match self.affinely(beginning) {
                 Some(affine) if beginnings.len() > 1 => {
