@@ -76,6 +76,19 @@ fn two_equal_rings_correspond_point_by_point() {
 }
 
 #[test]
+fn names_of_elements_say_what_corresponds() {
+    // Twice the same spots, which only their names tell apart.
+    let with_spots = |left: &str, right: &str| {
+        drawing(&format!(
+            r##"<rect id="body" x="50" y="80" width="300" height="240" rx="60" fill="#ca8"/><circle id="{left}" cx="150" cy="200" r="14" fill="#213"/><circle id="{right}" cx="190" cy="200" r="14" fill="#213"/>"##
+        ))
+    };
+    let mapping = mapped([with_spots("a", "b"), with_spots("c", "a")]);
+    let spot = carried(&mapping, Point::new(150.0, 200.0));
+    assert!((spot - Point::new(190.0, 200.0)).norm() < 10.0, "{spot}");
+}
+
+#[test]
 fn a_ball_that_is_squashed_keeps_its_top_and_its_eyes() {
     let ball = |rx: f64, ry: f64, y: f64| {
         drawing(&format!(

@@ -60,6 +60,8 @@ const FIRST_STIFFNESS: f64 = 30.0;
 const FIRST_ITERATIONS: usize = 10;
 /// A beginning is taken instead of one that turns the drawing less if its drawings differ by less than this share, less this difference.
 const CLEARLY: (f64, f64) = (0.95, 0.003);
+/// The blurred coverage of a place that is away from the edge.
+const INSIDE: f32 = 0.97;
 /// The radius, in working pixels, of what is compared of a beginning at each vertex.
 const POINT_PX: f64 = 1.0;
 /// The share by which a difference counts more for each radian that the figure is turned, up to a quarter turn: drawings stand upright, and one
@@ -177,8 +179,13 @@ pub fn register(
             )
         })
         .collect();
-    // Beginnings are compared point by point: patches are rigid, and would count what is squashed as different.
-    let points = Template::new(&lattice, &own.blurred(LEVELS[0].deviation_px), POINT_PX);
+    // Beginnings are compared point by point: patches are rigid, and would count what is squashed as different. And away from the edge, which
+    // outlines in correspondence meet whatever they are.
+    let blurred = own.blurred(LEVELS[0].deviation_px);
+    let points = Template::new(&lattice, &blurred, POINT_PX);
+    let inside: Vec<bool> = (lattice.points.iter())
+        .map(|p| blurred.at(p.x as f32, p.y as f32)[4] >= INSIDE)
+        .collect();
     let registered: Vec<Option<(Vec<Point>, f64, usize)>> = (0..appearances.len())
         .into_par_iter()
         .map(|pose| {
@@ -191,6 +198,7 @@ pub fn register(
                 own,
                 &appearances[pose],
                 pins.get(pose).map_or(&[], Vec::as_slice),
+                &inside,
             );
             pair.registered(&points, &templates, beginnings).map(Some)
         })
@@ -223,10 +231,18 @@ struct Pair<'a> {
     pose: &'a Appearance,
     /// In working pixels.
     pins: Vec<Pin>,
+    /// Which vertices are inside the figure, away from its edge.
+    inside: &'a [bool],
 }
 
 impl<'a> Pair<'a> {
-    fn new(lattice: &'a Lattice, reference: &'a Appearance, pose: &'a Appearance, pins: &[Pin]) -> Self {
+    fn new(
+        lattice: &'a Lattice,
+        reference: &'a Appearance,
+        pose: &'a Appearance,
+        pins: &[Pin],
+        inside: &'a [bool],
+    ) -> Self {
         Self {
             lattice,
             reference,
@@ -238,6 +254,7 @@ impl<'a> Pair<'a> {
                     trust: pin.trust,
                 })
                 .collect(),
+            inside,
         }
     }
 
@@ -257,7 +274,13 @@ impl<'a> Pair<'a> {
             let places = self.begun(&rigid, beginning)?;
             let differs = |places: &[Point]| {
                 let rotations = rigid.rotations(places, 1);
-                mean_residual(&points.fits(&image, places, &rotations, &here, 1.0))
+                let fits = points.fits(&image, places, &rotations, &here, 1.0);
+                let inside = fits.into_iter().zip(&self.inside);
+                mean_residual(
+                    &inside
+                        .filter_map(|(fit, inside)| inside.then_some(fit))
+                        .collect::<Vec<_>>(),
+                )
             };
             let difference = match self.affinely(beginning) {
                 Some(affine) if beginnings.len() > 1 => {
