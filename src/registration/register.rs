@@ -275,7 +275,7 @@ impl<'a> Pair<'a> {
             let differs = |places: &[Point]| {
                 let rotations = rigid.rotations(places, 1);
                 let fits = points.fits(&image, places, &rotations, &here, 1.0);
-                let inside = fits.into_iter().zip(&self.inside);
+                let inside = fits.into_iter().zip(self.inside);
                 mean_residual(
                     &inside
                         .filter_map(|(fit, inside)| inside.then_some(fit))
