@@ -2,7 +2,7 @@
 //!
 //! [`Drawing`](crate::input::Drawing) -> [`Appearance`]: the figure resampled so that every pose has the same area, in channels whose
 //! differences mean about as much to an eye: lightness and the two colour axes of CIELAB, ink (lines darker than what surrounds them), and
-//! coverage. [`Appearance::blurred`] gives a level of its scale space as a [`ChannelImage`], [`Appearance::profile`] what lies just inside a
+//! coverage. [`Appearance::blurred`] gives a level of its scale space as a [`ChannelImage`], [`Appearance::profiles`] what lies just inside a
 //! closed curve.
 //!
 //! | term | meaning |

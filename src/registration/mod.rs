@@ -7,7 +7,7 @@
 //!
 //! 1. A triangular lattice over the reference's figure (`lattice`), which keeps limbs apart that lie side by side.
 //! 2. A beginning from outlines in correspondence (`outline`); of several, the one whose drawing is explained best.
-//! 3. At each of [`LEVELS`], coarse to fine: the patch of every vertex is compared with a window of the other drawing (`template`); the soft
+//! 3. At each of five levels, coarse to fine: the patch of every vertex is compared with a window of the other drawing (`template`); the soft
 //!    minimum of the costs is a displacement *and its covariance*, so that an edge holds across itself and lets slide along itself, and a
 //!    uniform area lets go altogether. The lattice follows as rigidly as possible (`rigid`).
 //!
