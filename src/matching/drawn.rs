@@ -106,20 +106,17 @@ impl Task<'_> {
     }
 
     fn candidates(&self, most: usize) -> Vec<CoarseMatch> {
-        let (coarse, fine) = (
-            self.even_table(COARSE_STRIDE, DIRECTION_COST),
-            self.even_table(FINE_STRIDE, DIRECTION_COST),
-        );
-        // Alone, the upright match is to be as upright as it can; among others it is a beginning.
-        let upright_fine = (most == 1).then(|| self.even_table(FINE_STRIDE, UPRIGHT_COST));
-        let fine = upright_fine.unwrap_or(fine);
+        let coarse = self.even_table(COARSE_STRIDE, UPRIGHT_COST);
         let apart = ((APART * coarse.row_count() as f64).round() as usize).max(1);
-        let upright = cheapest_paths(&self.even_table(COARSE_STRIDE, UPRIGHT_COST), apart, 1);
-        let others = if most > 1 {
-            cheapest_paths(&coarse, apart, most)
+        let upright = cheapest_paths(&coarse, apart, 1);
+        // Alone, the upright match is to be as upright as it can; among others it is a beginning.
+        let (fine_cost, others) = if most > 1 {
+            let table = self.even_table(COARSE_STRIDE, DIRECTION_COST);
+            (DIRECTION_COST, cheapest_paths(&table, apart, most))
         } else {
-            Vec::new()
+            (UPRIGHT_COST, Vec::new())
         };
+        let fine = self.even_table(FINE_STRIDE, fine_cost);
         let start = |matched: &CoarseMatch| matched.map.at(self.frame.rows[0]);
         let mut found: Vec<CoarseMatch> = Vec::new();
         for path in upright.iter().chain(&others) {

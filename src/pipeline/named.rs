@@ -7,6 +7,7 @@
 use crate::input::{ArtElement, Drawing, Subpath};
 use crate::math::Point;
 use crate::math::point::bounding_box;
+use crate::outline::Ring;
 
 /// An element is small if its box has at most this share of the figure's diagonal: wherever its middle is exactly, it is there.
 const SMALL: f64 = 0.12;
@@ -85,14 +86,16 @@ fn ends_and_middles(subpath: &Subpath) -> Vec<Point> {
 }
 
 /// What an element hides: nothing, or what is inside these polygons.
-type Cover = Vec<Vec<Point>>;
+type Cover = Vec<Ring>;
 
 fn covers(elements: &[ArtElement]) -> Vec<Cover> {
     let cover = |element: &ArtElement| -> Cover {
         if element.fill.is_none() || element.opacity < OPAQUE {
             return Vec::new();
         }
-        element.subpaths.iter().map(flattened).collect()
+        // Without three distinct points nothing is inside.
+        let rings = element.subpaths.iter().map(|subpath| Ring::new(flattened(subpath)));
+        rings.filter_map(Result::ok).collect()
     };
     elements.iter().map(cover).collect()
 }
@@ -113,16 +116,8 @@ fn flattened(subpath: &Subpath) -> Vec<Point> {
 
 /// Whether any of the covers has the point inside, by the even-odd rule.
 fn is_covered(covers: &[Cover], p: Point) -> bool {
-    covers.iter().any(|cover| {
-        let edges = cover.iter().flat_map(|polygon| {
-            let next = polygon.iter().skip(1).chain(polygon.first());
-            polygon.iter().zip(next)
-        });
-        edges.fold(false, |inside, (a, b)| {
-            let crosses = (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
-            inside != crosses
-        })
-    })
+    let is_inside = |cover: &Cover| cover.iter().filter(|ring| ring.contains(p)).count() % 2 == 1;
+    covers.iter().any(is_inside)
 }
 
 #[cfg(test)]

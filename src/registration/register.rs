@@ -282,12 +282,13 @@ impl<'a> Pair<'a> {
                         .collect::<Vec<_>>(),
                 )
             };
-            let difference = match self.affinely(beginning) {
-                Some(affine) if beginnings.len() > 1 => {
+            let is_choice = beginnings.len() > 1;
+            let difference = match is_choice.then(|| self.affinely(beginning)).flatten() {
+                Some(affine) => {
                     let least = differs(&places).min(differs(&affine));
                     least * (1.0 + TURNED * self.turn_rad(&places).min(FRAC_PI_2))
                 }
-                _ => 0.0,
+                None => 0.0,
             };
             let is_better = |least: f64| difference < CLEARLY.0 * least - CLEARLY.1;
             if best.as_ref().is_none_or(|(least, ..)| is_better(*least)) {
