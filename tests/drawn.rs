@@ -1,5 +1,7 @@
 //! Correspondence by what is drawn, through the public interface: drawings in memory, no landmarks.
 
+use std::sync::Arc;
+
 use inbetween::appearance::Appearance;
 use inbetween::input::{Drawing, SvgOptions, read_svg};
 use inbetween::math::Point;
@@ -42,20 +44,19 @@ fn a_spot_is_found_where_it_moved_to_inside_an_outline_that_stays() {
     let (first, second) = (with_spot(170.0, 190.0), with_spot(178.0, 183.0));
     let points = first.outline.outer().points().to_vec();
     let beginnings: Vec<Vec<RingPairs>> = vec![vec![], vec![vec![(points.clone(), points)]]];
-    let appearances: Vec<Appearance> = [&first, &second].map(Appearance::new).into();
+    let appearances = [&first, &second].map(|drawing| Arc::new(Appearance::new(drawing)));
     let pins: Vec<Vec<Pin>> = vec![vec![], vec![]];
-    let (registration, _) = register(appearances, 0, &beginnings, &pins).expect("a registration");
+    let (registration, _) = register(&appearances, 0, &beginnings, &pins).expect("a registration");
     let spot = registration.carried(1, Point::new(170.0, 190.0)).expect("known");
     assert!((spot - Point::new(178.0, 183.0)).norm() < 1.5, "{spot}");
     let corner = registration.carried(1, Point::new(330.0, 300.0)).expect("known");
     assert!((corner - Point::new(330.0, 300.0)).norm() < 4.0, "{corner}");
     // What the artist says wins.
-    let appearances: Vec<Appearance> = [&first, &second].map(Appearance::new).into();
     let pins = vec![
         vec![],
         vec![Pin::certain(Point::new(260.0, 200.0), Point::new(266.0, 200.0))],
     ];
-    let (registration, _) = register(appearances, 0, &beginnings, &pins).expect("a registration");
+    let (registration, _) = register(&appearances, 0, &beginnings, &pins).expect("a registration");
     let pinned = registration.carried(1, Point::new(260.0, 200.0)).expect("known");
     assert!((pinned - Point::new(266.0, 200.0)).norm() < 1.0, "{pinned}");
 }

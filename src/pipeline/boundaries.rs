@@ -29,7 +29,7 @@ pub(super) struct Boundaries {
     pub(super) outlines: Vec<Outline>,
     pub(super) matched: Matched,
     /// What the drawings show.
-    appearances: Vec<Appearance>,
+    appearances: Vec<Arc<Appearance>>,
     /// Where that is in every pose; `None` where nothing is drawn inside.
     pub(super) guide: Option<RegistrationGuide>,
     /// Pairs of points inside that guide the registration.
@@ -64,7 +64,7 @@ impl Boundaries {
         };
         // Rims of holes turn with the outline around them only where the inside is looked at, too.
         let has_holes = outlines.iter().any(|outline| !outline.holes().is_empty());
-        let is_drawn = has_holes || appearances.iter().any(Appearance::is_drawn);
+        let is_drawn = has_holes || appearances.iter().any(|appearance| appearance.is_drawn());
         let (matched, alone, guide) = if is_drawn {
             let options = MatchOptions {
                 reference: layer.reference,

@@ -36,8 +36,11 @@ impl Guide for RegistrationGuide {
 }
 
 /// The appearances of some drawings.
-pub(super) fn appearances(drawings: &[Arc<Drawing>]) -> Vec<Appearance> {
-    drawings.par_iter().map(|drawing| Appearance::new(drawing)).collect()
+pub(super) fn appearances(drawings: &[Arc<Drawing>]) -> Vec<Arc<Appearance>> {
+    drawings
+        .par_iter()
+        .map(|drawing| Arc::new(Appearance::new(drawing)))
+        .collect()
 }
 
 /// Matches all rings and registers the interiors. `inside` are pairs of points inside that correspond for certain: #points x #poses.
@@ -45,7 +48,7 @@ pub(super) fn match_by_drawing(
     names: &[String],
     drawings: &[Arc<Drawing>],
     outlines: &mut [Outline],
-    appearances: &[Appearance],
+    appearances: &[Arc<Appearance>],
     landmarks: &[Landmark],
     inside: &[Vec<Option<Point>>],
     mut options: MatchOptions,
@@ -78,7 +81,7 @@ pub(super) fn match_by_drawing(
             certain.chain(named.map(|[from, to]| Pin::likely(from, to))).collect()
         })
         .collect();
-    let (registration, chosen) = register(appearances.to_vec(), reference, &beginnings, &pins)
+    let (registration, chosen) = register(appearances, reference, &beginnings, &pins)
         .map_err(|error| PipelineError::stage(names, Some(reference), error))?;
     let carried = |pose: usize, place: Point| registration.carried(pose, place);
     let first = candidates
@@ -111,7 +114,7 @@ pub(super) fn match_by_drawing(
 
 fn proposed(
     rings: &[Ring],
-    appearances: &[Appearance],
+    appearances: &[Arc<Appearance>],
     landmarks: &[Landmark],
     options: &MatchOptions,
 ) -> Result<RingCandidates, MatchError> {
@@ -124,7 +127,7 @@ fn proposed(
 /// The match of a hole that fits the registration best.
 fn match_hole(
     rings: &[Ring],
-    appearances: &[Appearance],
+    appearances: &[Arc<Appearance>],
     options: &MatchOptions,
     carried: &(dyn Fn(usize, Point) -> Option<Point> + Sync),
 ) -> Result<RingMatch, MatchError> {

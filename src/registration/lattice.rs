@@ -7,7 +7,8 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use crate::math::{Matrix, Point, point};
+use super::rigid::turned;
+use crate::math::{Point, point};
 
 /// Pieces of a cell smaller than this share of a whole one are united with the neighbour along most of their border.
 const LEAST_CELL: f64 = 0.08;
@@ -105,10 +106,7 @@ impl Lattice {
             Some((weights, t)) => (self.triangles[t].iter().zip(weights))
                 .map(|(&v, w)| places[v] * w)
                 .sum(),
-            None => {
-                let turn = rotations[cell];
-                places[cell] + Matrix::new(turn.x, -turn.y, turn.y, turn.x) * (p - self.points[cell])
-            }
+            None => places[cell] + turned(rotations[cell], p - self.points[cell]),
         })
     }
 
@@ -317,6 +315,7 @@ fn flooded(mut labels: Vec<u32>, width: usize, height: usize) -> (Vec<u32>, Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Matrix;
 
     #[test]
     fn two_strips_a_pixel_apart_are_two_components() {

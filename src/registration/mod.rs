@@ -17,8 +17,11 @@
 //! Cost: O(#vertices x #candidates x #samples of a patch) a level, about 40 ms a pose. Limit: what moved by more than the widest window from
 //! the beginning is not found.
 
+mod beginning;
 mod lattice;
+mod levels;
 mod outline;
+mod pair;
 mod register;
 mod rigid;
 mod template;

@@ -1,7 +1,7 @@
 //! Beginnings of a registration: the interior that follows from outlines in correspondence.
 
 use super::lattice::Lattice;
-use super::rigid::{Rigid, Targets};
+use super::rigid::{Rigid, Targets, turned};
 use crate::math::{Matrix, Point, point};
 use crate::solve::SolveError;
 
@@ -25,7 +25,6 @@ pub(super) struct RingPair {
 pub(super) fn spread(
     lattice: &Lattice,
     rigid: &Rigid,
-    size: f64,
     rings: &[RingPair],
     pins: &[[Point; 2]],
 ) -> Result<Vec<Point>, SolveError> {
@@ -50,7 +49,7 @@ pub(super) fn spread(
         }
     }
     if samples.is_empty() {
-        return Ok(lattice.points.iter().map(|p| p * size).collect());
+        return Ok(lattice.points.clone());
     }
     let nearest_of = |p: Point, of: &mut dyn Iterator<Item = usize>| {
         of.min_by(|a, b| {
@@ -64,14 +63,13 @@ pub(super) fn spread(
         let own = nearest_of(p, &mut around.flat_map(|cell| of_cell[cell].iter().copied()));
         let is_near = own.is_some_and(|k| (samples[k].0 - p).norm() < NEAR * lattice.spacing);
         let nearest = own.or_else(|| nearest_of(p, &mut (0..samples.len())));
-        let (from, to, turn) = nearest.map_or((p, p * size, Point::new(1.0, 0.0)), |k| samples[k]);
-        let turned = Matrix::new(turn.x, -turn.y, turn.y, turn.x) * (p - from);
-        places.push(to + turned * size);
+        let (from, to, turn) = nearest.map_or((p, p, Point::new(1.0, 0.0)), |k| samples[k]);
+        places.push(to + turned(turn, p - from));
         trust.push(Matrix::identity() * if is_near { 1.0 } else { FREE_TRUST });
     }
     for [from, to] in pins {
         if let Some((cell, _)) = lattice.cell_at(*from) {
-            places[cell] = to + (lattice.points[cell] - from) * size;
+            places[cell] = to + (lattice.points[cell] - from);
             trust[cell] = Matrix::identity();
         }
     }

@@ -20,19 +20,23 @@ pub(super) struct Targets<'a> {
     pub(super) trust: &'a [Matrix],
 }
 
-/// A lattice at rest, `size` times as large as it is.
+/// `p` turned by the angle whose cosine and sine `turn` has.
+pub(super) fn turned(turn: Point, p: Point) -> Point {
+    Matrix::new(turn.x, -turn.y, turn.y, turn.x) * p
+}
+
+/// A lattice, at rest where its points are.
 pub(super) struct Rigid<'a> {
     lattice: &'a Lattice,
-    size: f64,
 }
 
 impl<'a> Rigid<'a> {
-    pub(super) fn new(lattice: &'a Lattice, size: f64) -> Self {
-        Self { lattice, size }
+    pub(super) fn new(lattice: &'a Lattice) -> Self {
+        Self { lattice }
     }
 
     fn rest(&self, [a, b]: [usize; 2]) -> Point {
-        (self.lattice.points[a] - self.lattice.points[b]) * self.size
+        self.lattice.points[a] - self.lattice.points[b]
     }
 
     /// By vertex, cosine and sine of the best rotation of its edges, averaged with its neighbours' in `smoothings` steps.
@@ -93,7 +97,7 @@ impl<'a> Rigid<'a> {
             let mut right = pulled.clone();
             for &[a, b] in &self.lattice.edges {
                 let (turn, rest) = ((rotations[a] + rotations[b]) * 0.5, self.rest([a, b]));
-                let turned = Matrix::new(turn.x, -turn.y, turn.y, turn.x) * rest * stiffness;
+                let turned = turned(turn, rest) * stiffness;
                 right[a] += turned;
                 right[b] -= turned;
             }

@@ -1,0 +1,142 @@
+//! One pose registered to the reference, level after level.
+
+use super::beginning::mean_residual;
+use super::lattice::Lattice;
+use super::levels::{LEVELS, Level};
+use super::register::{Pin, RegistrationError, RingPairs};
+use super::rigid::{Rigid, Targets, turned};
+use super::template::{Fit, MOST_DIFFERENCE, Template, Window};
+use crate::appearance::{Appearance, ByteImage, PIXELS_PER_UNIT};
+use crate::math::{Matrix, Point};
+
+/// A beginning is first made this stiff, beside a trust of 1 in where it is: folds that the outlines left come out.
+const FIRST_STIFFNESS: f64 = 30.0;
+const FIRST_ITERATIONS: usize = 10;
+/// Trust falls by a factor e when the best place in the window differs by this share of [`MOST_DIFFERENCE`].
+const DOUBT: f32 = 0.25;
+/// A level ends when vertices move by less than this share of its step in the mean.
+const STILL: f64 = 0.1;
+
+/// The reference and one other pose.
+pub(super) struct Pair<'a> {
+    pub(super) lattice: &'a Lattice,
+    pub(super) reference: &'a Appearance,
+    pub(super) pose: &'a Appearance,
+    /// In working pixels.
+    pub(super) pins: Vec<Pin>,
+    /// Which vertices are inside the figure, away from its edge.
+    pub(super) inside: &'a [bool],
+}
+
+impl<'a> Pair<'a> {
+    pub(super) fn new(
+        lattice: &'a Lattice,
+        reference: &'a Appearance,
+        pose: &'a Appearance,
+        pins: &[Pin],
+        inside: &'a [bool],
+    ) -> Self {
+        Self {
+            lattice,
+            reference,
+            pose,
+            pins: (pins.iter())
+                .map(|pin| Pin {
+                    from: reference.to_pixels(pin.from),
+                    to: pose.to_pixels(pin.to),
+                    trust: pin.trust,
+                })
+                .collect(),
+            inside,
+        }
+    }
+
+    /// The places of the vertices, how much the drawings still differ there, and from which beginning.
+    pub(super) fn registered(
+        &self,
+        points: &Template,
+        templates: &[Template],
+        beginnings: &[RingPairs],
+    ) -> Result<(Vec<Point>, f64, usize), RegistrationError> {
+        let rigid = Rigid::new(self.lattice);
+        let (beginning, number) = self.best_beginning(&rigid, points, beginnings)?;
+        let mut places = self.stiffened(&rigid, &beginning)?;
+        let mut residual = 0.0;
+        for (level, template) in LEVELS.iter().zip(templates) {
+            let fits;
+            (places, fits) = self.level(level, template, &rigid, places)?;
+            residual = mean_residual(&fits);
+        }
+        Ok((places, residual, number))
+    }
+
+    /// The vertices moved a little towards a rigid form, so that folds come out.
+    fn stiffened(&self, rigid: &Rigid, places: &[Point]) -> Result<Vec<Point>, RegistrationError> {
+        let (mut wanted, mut trust) = (places.to_vec(), vec![Matrix::identity(); places.len()]);
+        self.pin(rigid, places, &mut wanted, &mut trust);
+        let targets = Targets {
+            places: &wanted,
+            trust: &trust,
+        };
+        Ok(rigid.solve(places, &targets, FIRST_STIFFNESS, FIRST_ITERATIONS)?)
+    }
+
+    /// Joins the targets with those that pins give the vertices next to them, each by its trust.
+    fn pin(&self, rigid: &Rigid, places: &[Point], targets: &mut [Point], trust: &mut [Matrix]) {
+        if self.pins.is_empty() {
+            return;
+        }
+        let rotations = rigid.rotations(places, 1);
+        let mut sums = vec![(0.0, Point::zeros()); targets.len()];
+        for pin in &self.pins {
+            if let Some((cell, _)) = self.lattice.cell_at(pin.from) {
+                let aside = turned(rotations[cell], self.lattice.points[cell] - pin.from);
+                sums[cell].0 += pin.trust;
+                sums[cell].1 += (pin.to + aside) * pin.trust;
+            }
+        }
+        for (cell, (sum, weighted)) in sums.into_iter().enumerate().filter(|(_, sum)| sum.0 > 0.0) {
+            let joint = trust[cell] + Matrix::identity() * sum;
+            if let Some(inverse) = joint.try_inverse() {
+                targets[cell] = inverse * (trust[cell] * targets[cell] + weighted);
+                trust[cell] = joint;
+            }
+        }
+    }
+
+    fn level(
+        &self,
+        level: &Level,
+        template: &Template,
+        rigid: &Rigid,
+        mut places: Vec<Point>,
+    ) -> Result<(Vec<Point>, Vec<Fit>), RegistrationError> {
+        let window = Window::new(level.reach * PIXELS_PER_UNIT, level.step * PIXELS_PER_UNIT);
+        let image = ByteImage::new(&self.pose.blurred(level.deviation_px), window.reach);
+        let floor = Matrix::identity() * (0.25 * window.step * window.step);
+        let mut fits = Vec::new();
+        for _ in 0..level.iterations {
+            let rotations = rigid.rotations(&places, 1);
+            fits = template.fits(&image, &places, &rotations, &window, level.temperature);
+            let (mut targets, mut trust) = (Vec::new(), Vec::new());
+            for (fit, place) in fits.iter().zip(&places) {
+                let confidence = f64::from(libm::expf(-fit.residual / (DOUBT * MOST_DIFFERENCE)));
+                let inverse = (fit.covariance + floor).try_inverse().unwrap_or_else(Matrix::zeros);
+                targets.push(place + fit.displacement);
+                trust.push(inverse * confidence * self.lattice.spacing.powi(2));
+            }
+            self.pin(rigid, &places, &mut targets, &mut trust);
+            let targets = Targets {
+                places: &targets,
+                trust: &trust,
+            };
+            let solved = rigid.solve(&places, &targets, level.stiffness, 6)?;
+            let moved = solved.iter().zip(&places).map(|(a, b)| (a - b).norm()).sum::<f64>();
+            places = solved;
+            if moved < STILL * window.step * places.len() as f64 {
+                break;
+            }
+        }
+        Ok((places, fits))
+    }
+}
