@@ -89,14 +89,18 @@ for (const slot of skeleton.slots) {
   const shapes = exact.get(slot.data.name);
   if (!shapes) continue;
   const attachment = slot.getAttachment();
-  // The same vertex in the other order: by its place on the picture.
+  // The same vertex in the other order: the nearest by its place on the picture, since a corner may be a hundredth of a pixel from a landmark.
   const uvs = attachment.regionUVs;
   const order = [];
-  const place = new Map();
-  const key = (u, v) => `${Math.round(u * 1e5)},${Math.round(v * 1e5)}`;
-  for (let v = 0; v < shapes.uvs.length / 2; v++)
-    for (const du of [-1, 0, 1]) for (const dv of [-1, 0, 1]) place.set(key(shapes.uvs[2 * v] + du * 1e-5, shapes.uvs[2 * v + 1] + dv * 1e-5), v);
-  for (let v = 0; v < uvs.length / 2; v++) order.push(place.get(key(uvs[2 * v], uvs[2 * v + 1])));
+  const nearest = (u, v) => {
+    let best = [1.5e-5, undefined];
+    for (let k = 0; k < shapes.uvs.length / 2; k++) {
+      const away = Math.max(Math.abs(shapes.uvs[2 * k] - u), Math.abs(shapes.uvs[2 * k + 1] - v));
+      if (away < best[0]) best = [away, k];
+    }
+    return best[1];
+  };
+  for (let v = 0; v < uvs.length / 2; v++) order.push(nearest(uvs[2 * v], uvs[2 * v + 1]));
   if (new Set(order).size !== order.length || order.includes(undefined)) unequal++;
   const deform = json.animations[animation.name].attachments?.default?.[slot.data.name]?.[slot.data.name]?.deform;
   keys = Math.max(keys, deform?.length ?? 1);
