@@ -78,7 +78,7 @@ pub(crate) fn lines(layer: &LayerSpec, mapping: &Mapping, report: &MappingReport
         .collect();
     let mut lines = aligned(["stage", "ms", "result"], &rows);
     let names = mapping.poses.names();
-    let matches: Vec<[String; 3]> = names
+    let matches: Vec<[String; 4]> = names
         .iter()
         .enumerate()
         .map(|(pose, name)| {
@@ -100,11 +100,16 @@ pub(crate) fn lines(layer: &LayerSpec, mapping: &Mapping, report: &MappingReport
             if more > 0 {
                 through.push_str(&format!(" and {more} more"));
             }
-            [name.clone(), cost, through]
+            let found = report.explained.get(pose).copied().flatten();
+            let found = found.map_or("-".to_owned(), |explained| format!("{:.0} %", 100.0 * explained.share));
+            [name.clone(), cost, found, through]
         })
         .collect();
     lines.push(String::new());
-    lines.extend(aligned(["pose", "cost", "matched through the landmarks"], &matches));
+    lines.extend(aligned(
+        ["pose", "cost", "found", "matched through the landmarks"],
+        &matches,
+    ));
     lines
 }
 
@@ -166,17 +171,23 @@ fn numbers_of(row: Row, layer: &LayerSpec, mapping: &Mapping, report: &MappingRe
     }
 }
 
-/// Three columns: words, a number, words.
-fn aligned(head: [&str; 3], rows: &[[String; 3]]) -> Vec<String> {
+/// Columns: words, numbers, words.
+fn aligned<const N: usize>(head: [&str; N], rows: &[[String; N]]) -> Vec<String> {
     let width = |column: usize| {
         let widths = rows.iter().map(|row| row[column].chars().count());
         widths.fold(head[column].len(), usize::max)
     };
-    let (first, second) = (width(0), width(1));
-    let line = |[a, b, c]: [&str; 3]| format!("{a:first$}  {b:>second$}  {c}").trim_end().to_owned();
-    let mut lines = vec![line(head)];
-    lines.extend(rows.iter().map(|[a, b, c]| line([a, b, c])));
-    lines
+    let line = |entries: [&str; N]| {
+        let entry = |(column, entry): (usize, &str)| match column {
+            0 => format!("{entry:0$}", width(0)),
+            last if last + 1 == N => entry.to_owned(),
+            _ => format!("{entry:>0$}", width(column)),
+        };
+        let entries: Vec<String> = entries.into_iter().enumerate().map(entry).collect();
+        entries.join("  ").trim_end().to_owned()
+    };
+    let rows = rows.iter().map(|row| row.each_ref().map(String::as_str));
+    std::iter::once(head).chain(rows).map(line).collect()
 }
 
 #[cfg(test)]

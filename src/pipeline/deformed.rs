@@ -103,6 +103,14 @@ pub(super) fn with_copies(
         landmark.given = given;
         landmark.at = poses.iter().map(|pose| pose.landmarks[k].clone()).collect();
     }
+    report.explained = (0..poses.len())
+        .map(|pose| {
+            order
+                .iter()
+                .position(|&p| p == pose)
+                .and_then(|at| report.explained[at])
+        })
+        .collect();
     report.matching.poses = poses.iter().map(|pose| pose.matched.clone()).collect();
     let rows = drawn.matching.outer.rows().len();
     let rows = (0..rows)

@@ -115,7 +115,7 @@ fn refusal(layer: &LayerSpec, pose: usize, source: InputError) -> PipelineError 
 }
 
 /// The drawing reflected left to right about the middle of its outline, so that it stays where it is.
-fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
+pub(super) fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
     let Drawing {
         outline,
         mut picture,

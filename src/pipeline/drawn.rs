@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::PipelineError;
 use super::boundaries::{Matched, match_refusal, order_holes};
+use super::drawings::mirrored;
 use super::named::named_pairs;
 use crate::appearance::{Appearance, Profile};
 use crate::compatible::Guide;
@@ -14,6 +15,9 @@ use crate::matching::{Landmark, MatchError, MatchOptions, MirrorHints, RingCandi
 use crate::math::Point;
 use crate::outline::{ArcLength, Outline, Ring};
 use crate::registration::{Pin, Registration, RingPairs, register};
+
+/// A drawing looks reflected if its reflection differs from the reference by less than this share of what it differs itself.
+const REFLECTED_SHARE: f64 = 0.8;
 
 /// Samples of a profile: one a row of a match.
 const PROFILE_SAMPLES: usize = 512;
@@ -58,14 +62,7 @@ pub(super) fn match_by_drawing(
     let candidates = proposed(&outer, appearances, landmarks, &options).map_err(refusal)?;
     let reference = candidates.reference();
     let poses = 0..outlines.len();
-    let beginnings: Vec<Vec<RingPairs>> = poses
-        .clone()
-        .map(|pose| {
-            (0..candidates.count(pose))
-                .filter_map(|candidate| candidates.pairs(pose, candidate).map(|pair| vec![pair]))
-                .collect()
-        })
-        .collect();
+    let beginnings: Vec<Vec<RingPairs>> = poses.clone().map(|pose| beginnings(&candidates, pose)).collect();
     let arcs: Vec<ArcLength> = outer.iter().map(ArcLength::new).collect();
     let on_outline = landmarks.iter().map(|landmark| -> Vec<Option<Point>> {
         let places = landmark.at.iter().zip(&arcs);
@@ -84,9 +81,18 @@ pub(super) fn match_by_drawing(
     let (registration, chosen) = register(appearances, reference, &beginnings, &pins)
         .map_err(|error| PipelineError::stage(names, Some(reference), error))?;
     let carried = |pose: usize, place: Point| registration.carried(pose, place);
-    let first = candidates
+    let mut first = candidates
         .settled(&outer, &chosen, &options, &carried)
         .map_err(refusal)?;
+    for (pose, matched) in first.report.poses.iter_mut().enumerate() {
+        // Outlines alone cannot tell a figure that faces the other way from one that leans there. Names and landmarks inside can.
+        matched.looks_mirrored = matched.looks_mirrored
+            && pins[pose].is_empty()
+            && registration.residual(pose).is_some_and(|residual| {
+                let reflected = residual_reflected(&drawings[pose], &outer[reference], &appearances[reference]);
+                reflected.is_some_and(|reflected| reflected < REFLECTED_SHARE * residual)
+            });
+    }
     order_holes(outlines, reference)?;
     let mut matched = Matched {
         reference,
@@ -110,6 +116,29 @@ pub(super) fn match_by_drawing(
             registration,
         },
     ))
+}
+
+/// How a registration of `pose` may begin.
+fn beginnings(candidates: &RingCandidates, pose: usize) -> Vec<RingPairs> {
+    (0..candidates.count(pose))
+        .filter_map(|candidate| candidates.pairs(pose, candidate).map(|pair| vec![pair]))
+        .collect()
+}
+
+/// How much a drawing, reflected, differs from the reference where it is registered to it; `None` where it cannot be.
+fn residual_reflected(drawing: &Drawing, reference: &Ring, shown: &Arc<Appearance>) -> Option<f64> {
+    let reflected = mirrored(drawing.clone()).ok()?;
+    let rings = [reference.clone(), reflected.outline.outer().clone()];
+    let appearances = [Arc::clone(shown), Arc::new(Appearance::new(&reflected))];
+    let options = MatchOptions {
+        reference: Some(0),
+        mirror_hints: MirrorHints::Skip,
+        ..MatchOptions::default()
+    };
+    let candidates = proposed(&rings, &appearances, &[], &options).ok()?;
+    let of_reflected = vec![Vec::new(), beginnings(&candidates, 1)];
+    let (registration, _) = register(&appearances, 0, &of_reflected, &[]).ok()?;
+    registration.residual(1)
 }
 
 fn proposed(

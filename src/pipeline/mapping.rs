@@ -15,6 +15,7 @@ use crate::input::Drawing;
 use crate::math::Point;
 use crate::outline::{ArcLength, Outline};
 use crate::pose::{Mapping, Matching, MeshQuality, PoseSet};
+use crate::registration::Explained;
 
 /// Lines inside are simplified to the mesh's tolerance; where they then touch the outline or one another, to these shares
 /// of it.
@@ -22,6 +23,9 @@ const FINER_LINES: [f64; 4] = [1.0, 0.25, 0.0625, 0.0];
 
 /// By how much, as a fraction, the units of drawings may differ without a word: rounding of a page's size.
 const LIKE_UNITS: f64 = 0.02;
+
+/// From this share of the reference's figure on that is found in a pose, nothing is said.
+const EXPLAINED_ENOUGH: f64 = 0.5;
 
 /// A variation of the simplification with fewer Steiner points is kept if the low angles of its refined mesh are at least
 /// this share of the first one's: good triangles are worth more than few points.
@@ -111,6 +115,10 @@ fn map_drawn(
             ));
         }
     }
+    let explained: Vec<Option<Explained>> = (0..names.len())
+        .map(|pose| boundaries.guide.as_ref()?.registration.explained(pose))
+        .collect();
+    notes.extend(notes_on_strangers(&names, matched.reference, &explained));
     let mut simplified = boundaries.simplified.clone();
 
     begins(Stage::Triangulation);
@@ -156,6 +164,7 @@ fn map_drawn(
     let report = MappingReport {
         notes,
         matching: matched.outer.clone(),
+        explained,
         holes: matched.holes.clone(),
         landmarks: placed,
         deformed: Vec::new(),
@@ -175,6 +184,29 @@ fn map_drawn(
         },
     };
     Ok((mapping, report, Arc::clone(&boundaries)))
+}
+
+/// Says which poses show something else than the reference, and where a landmark would say most.
+fn notes_on_strangers(names: &[String], reference: usize, explained: &[Option<Explained>]) -> Vec<String> {
+    (names.iter().zip(explained))
+        .filter_map(|(name, explained)| {
+            let Explained { share, least } = (*explained)?;
+            let [from, to] = least;
+            (share < EXPLAINED_ENOUGH).then(|| {
+                format!(
+                    "only {:.0} % of what pose '{}' shows is found on pose '{name}', least of all near ({:.0}, {:.0}); if it is the same \
+                     character, a landmark there, on '{}' near ({:.0}, {:.0}), would help most",
+                    100.0 * share,
+                    names[reference],
+                    to.x,
+                    to.y,
+                    names[reference],
+                    from.x,
+                    from.y
+                )
+            })
+        })
+        .collect()
 }
 
 /// Says that drawings are in different units, as one in millimetres among others in pixels is.

@@ -4,6 +4,7 @@ use super::DeformedPose;
 use crate::compatible::{RefineReport, SimplifyReport, TriangulateReport};
 use crate::matching::MatchReport;
 use crate::pose::{MeshQuality, PlacedLandmark};
+use crate::registration::Explained;
 
 /// A stage of [`map_layer`](super::map_layer).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -39,6 +40,9 @@ pub struct MappingReport {
     /// How the outer rings were matched. The numbers in [`PoseMatch::landmarks`](crate::matching::PoseMatch::landmarks)
     /// are places in `landmarks`.
     pub matching: MatchReport,
+    /// By pose, how much of what the reference shows is found in its drawing; `None` for the reference, for deformed copies, and where
+    /// nothing is drawn inside the outlines.
+    pub explained: Vec<Option<Explained>>,
     /// How the holes were matched, one report a hole.
     pub holes: Vec<MatchReport>,
     /// The landmarks on every pose: those on the outline, then those inside, then lines.

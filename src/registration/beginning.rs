@@ -11,7 +11,7 @@ use super::pair::Pair;
 use super::register::{RegistrationError, RingPairs};
 use super::rigid::Rigid;
 use super::template::{Fit, Template, Window};
-use crate::appearance::ByteImage;
+use crate::appearance::{ByteImage, PIXELS_PER_UNIT};
 use crate::math::{Matrix, Point, angle, point};
 
 /// A beginning is taken instead of one that turns the drawing less if its drawings differ by less than this share, less this difference.
@@ -23,72 +23,100 @@ pub(super) const POINT_PX: f64 = 1.0;
 /// The share by which a difference counts more for each radian that the figure is turned, up to a quarter turn: drawings stand upright, and one
 /// that was really turned differs several times as much if it is taken to stand.
 const TURNED: f64 = 0.1;
+
+/// How far the outline under a linear map may be from the other in the mean, in figure units, to be that outline squashed: less than a line is wide.
+const SQUASHED: f64 = 0.004;
+/// Alternations of nearest points and the best affine map, and how far the outlines may be apart to go on with them.
+const ALTERNATIONS: usize = 12;
+const HOPELESS: f64 = 0.03;
+/// Of so many points of an outline one is looked at.
+const SQUASH_STRIDE: usize = 4;
+
+/// What a registration begins with.
+pub(super) struct Beginning {
+    pub(super) places: Vec<Point>,
+    /// The linear map under which the lattice is at rest: that of the outlines if one is the other squashed, else the identity.
+    pub(super) form: Matrix,
+    pub(super) number: usize,
+}
+
 impl Pair<'_> {
-    /// The vertices as the best beginning has them, and its number; `points` are those of [`POINT_PX`].
+    /// The best of some beginnings; `points` are those of [`POINT_PX`].
     pub(super) fn best_beginning(
         &self,
-        rigid: &Rigid,
         points: &Template,
         beginnings: &[RingPairs],
-    ) -> Result<(Vec<Point>, usize), RegistrationError> {
+    ) -> Result<Beginning, RegistrationError> {
+        let (number, rings, places) = self.least_different(points, beginnings)?;
+        Ok(match Affine::squashing(&rings) {
+            Some(affine) => Beginning {
+                places: self.moved(&affine),
+                form: affine.linear,
+                number,
+            },
+            None => Beginning {
+                places,
+                form: Matrix::identity(),
+                number,
+            },
+        })
+    }
+
+    /// The beginning whose drawings differ least where it has them: its number, its rings and where they put the vertices.
+    fn least_different(
+        &self,
+        points: &Template,
+        beginnings: &[RingPairs],
+    ) -> Result<(usize, Vec<RingPair>, Vec<Point>), RegistrationError> {
         if let [only] = beginnings {
-            return Ok((self.begun(rigid, only)?, 0));
+            let rings = self.in_pixels(only);
+            let places = self.spread(&rings)?;
+            return Ok((0, rings, places));
         }
+        let rigid = Rigid::new(self.lattice, Matrix::identity());
         let here = Window::here();
         let image = ByteImage::new(&self.pose.blurred(LEVELS[0].deviation_px), here.reach);
         let differs = |places: &[Point]| {
-            let rotations = rigid.rotations(places, 1);
-            let fits = points.fits(&image, places, &rotations, &here, 1.0);
+            let fits = points.fits(&image, places, &rigid.frames(places, 1), &here, 1.0);
             let inside = fits.into_iter().zip(self.inside);
             let inside: Vec<Fit> = inside.filter_map(|(fit, inside)| inside.then_some(fit)).collect();
             mean_residual(&inside)
         };
-        let mut best: Option<(f64, Vec<Point>, usize)> = None;
+        let mut best: Option<(f64, usize, Vec<RingPair>, Vec<Point>)> = None;
         for (number, beginning) in beginnings.iter().enumerate() {
             // Compared as the outlines have them, before they are stiffened: what is squashed is no worse than what is turned.
-            let places = self.begun(rigid, beginning)?;
-            let difference = self.affinely(beginning).map_or(0.0, |affine| {
-                let least = differs(&places).min(differs(&affine));
-                least * (1.0 + TURNED * self.turn_rad(&places).min(FRAC_PI_2))
-            });
+            let rings = self.in_pixels(beginning);
+            let places = self.spread(&rings)?;
+            let spread = differs(&places);
+            let least = Affine::of(&rings).map_or(spread, |affine| spread.min(differs(&self.moved(&affine))));
+            let difference = least * (1.0 + TURNED * self.turn_rad(&places).min(FRAC_PI_2));
             let is_better = |least: f64| difference < CLEARLY.0 * least - CLEARLY.1;
             if best.as_ref().is_none_or(|(least, ..)| is_better(*least)) {
-                best = Some((difference, places, number));
+                best = Some((difference, number, rings, places));
             }
         }
-        let (_, places, number) = best.ok_or(RegistrationError::NoFigure)?;
-        Ok((places, number))
+        let (_, number, rings, places) = best.ok_or(RegistrationError::NoFigure)?;
+        Ok((number, rings, places))
     }
 
-    /// The vertices where outlines in correspondence have them.
-    fn begun(&self, rigid: &Rigid, beginning: &RingPairs) -> Result<Vec<Point>, RegistrationError> {
-        let rings: Vec<RingPair> = (beginning.iter())
+    fn in_pixels(&self, beginning: &RingPairs) -> Vec<RingPair> {
+        (beginning.iter())
             .map(|(reference, pose)| RingPair {
                 reference: reference.iter().map(|p| self.reference.to_pixels(*p)).collect(),
                 pose: pose.iter().map(|p| self.pose.to_pixels(*p)).collect(),
             })
-            .collect();
-        let pins: Vec<[Point; 2]> = self.pins.iter().map(|pin| [pin.from, pin.to]).collect();
-        Ok(spread(self.lattice, rigid, &rings, &pins)?)
+            .collect()
     }
 
-    /// The vertices moved by the affine map that comes nearest to outlines in correspondence: what is squashed as a whole is squashed inside, too,
-    /// which a rigid form does not say. `None` if the outlines have no area.
-    fn affinely(&self, beginning: &RingPairs) -> Option<Vec<Point>> {
-        let pairs: Vec<(Point, Point)> = (beginning.iter())
-            .flat_map(|(reference, pose)| reference.iter().zip(pose))
-            .map(|(a, b)| (self.reference.to_pixels(*a), self.pose.to_pixels(*b)))
-            .collect();
-        let count = pairs.len() as f64;
-        let from = pairs.iter().map(|(a, _)| a).sum::<Point>() / count;
-        let to = pairs.iter().map(|(_, b)| b).sum::<Point>() / count;
-        let (mut second, mut mixed) = (Matrix::zeros(), Matrix::zeros());
-        for (a, b) in &pairs {
-            second += (a - from) * (a - from).transpose();
-            mixed += (b - to) * (a - from).transpose();
-        }
-        let map = mixed * second.try_inverse()?;
-        Some(self.lattice.points.iter().map(|p| map * (p - from) + to).collect())
+    /// The vertices where outlines in correspondence have them.
+    fn spread(&self, rings: &[RingPair]) -> Result<Vec<Point>, RegistrationError> {
+        let pins: Vec<[Point; 2]> = self.pins.iter().map(|pin| [pin.from, pin.to]).collect();
+        Ok(spread(self.lattice, rings, &pins)?)
+    }
+
+    /// The vertices under an affine map.
+    fn moved(&self, affine: &Affine) -> Vec<Point> {
+        self.lattice.points.iter().map(|p| affine.at(*p)).collect()
     }
 
     /// The absolute angle by which the figure is turned as a whole, in radians.
@@ -104,7 +132,63 @@ impl Pair<'_> {
     }
 }
 
+/// An affine map: `linear * (p - from) + to`.
+#[derive(Clone, Copy)]
+struct Affine {
+    linear: Matrix,
+    from: Point,
+    to: Point,
+}
+
+impl Affine {
+    fn at(&self, p: Point) -> Point {
+        self.linear * (p - self.from) + self.to
+    }
+
+    /// The one that comes nearest to outlines in correspondence: what is squashed as a whole is squashed inside, too, which a rigid form does
+    /// not say. `None` if the outlines have no area.
+    fn of(rings: &[RingPair]) -> Option<Self> {
+        let pairs = rings.iter().flat_map(|ring| ring.reference.iter().zip(&ring.pose));
+        Self::nearest(pairs.map(|(a, b)| (*a, *b)))
+    }
+
+    fn nearest(pairs: impl Iterator<Item = (Point, Point)> + Clone) -> Option<Self> {
+        let count = pairs.clone().count() as f64;
+        let from = pairs.clone().map(|(a, _)| a).sum::<Point>() / count;
+        let to = pairs.clone().map(|(_, b)| b).sum::<Point>() / count;
+        let (mut second, mut mixed) = (Matrix::zeros(), Matrix::zeros());
+        for (a, b) in pairs {
+            second += (a - from) * (a - from).transpose();
+            mixed += (b - to) * (a - from).transpose();
+        }
+        let linear = mixed * second.try_inverse()?;
+        (linear.determinant() > 0.0).then_some(Self { linear, from, to })
+    }
+
+    /// The map under which the reference's outlines *are* the pose's wherever their points go, if there is one: points in correspondence by arc
+    /// length are not yet where an affine map has them. Nearest points and the best map for them alternate (Besl and McKay 1992).
+    fn squashing(rings: &[RingPair]) -> Option<Self> {
+        let mut affine = Self::of(rings)?;
+        let mut distance = f64::INFINITY;
+        for _ in 0..ALTERNATIONS {
+            let pairs: Vec<(Point, Point)> = (rings.iter())
+                .flat_map(|ring| {
+                    let points = ring.reference.iter().step_by(SQUASH_STRIDE);
+                    points.map(|p| (*p, ring.nearest_of_pose(affine.at(*p))))
+                })
+                .collect();
+            let apart: f64 = pairs.iter().map(|(a, b)| (affine.at(*a) - b).norm()).sum();
+            distance = apart / (pairs.len().max(1) as f64 * PIXELS_PER_UNIT);
+            if distance > HOPELESS {
+                return None;
+            }
+            affine = Self::nearest(pairs.iter().copied())?;
+        }
+        (distance < SQUASHED).then_some(affine)
+    }
+}
+
 /// The mean over the vertices of how much their patches differ.
-pub(super) fn mean_residual(fits: &[Fit]) -> f64 {
+fn mean_residual(fits: &[Fit]) -> f64 {
     fits.iter().map(|fit| f64::from(fit.residual)).sum::<f64>() / fits.len().max(1) as f64
 }

@@ -7,8 +7,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use super::rigid::turned;
-use crate::math::{Point, point};
+use crate::math::{Matrix, Point, point};
 
 /// Pieces of a cell smaller than this share of a whole one are united with the neighbour along most of their border.
 const LEAST_CELL: f64 = 0.08;
@@ -86,9 +85,9 @@ impl Lattice {
         (self.owner[k] != NONE).then(|| (self.owner[k] as usize, self.distance[k]))
     }
 
-    /// Where a place goes when the vertices go to `places`: by the triangle of its cell that it is in or nearest to, or with the cell's
-    /// rotation where there is no triangle.
-    pub(super) fn carried(&self, places: &[Point], rotations: &[Point], p: Point) -> Option<Point> {
+    /// Where a place goes when the vertices go to `places`: by the triangle of its cell that it is in or nearest to, or by the linear
+    /// map of its cell in `frames` where there is no triangle.
+    pub(super) fn carried(&self, places: &[Point], frames: &[Matrix], p: Point) -> Option<Point> {
         let (cell, _) = self.cell_at(p)?;
         let best = (self.triangles_at[cell].iter())
             .map(|&t| {
@@ -106,7 +105,7 @@ impl Lattice {
             Some((weights, t)) => (self.triangles[t].iter().zip(weights))
                 .map(|(&v, w)| places[v] * w)
                 .sum(),
-            None => places[cell] + turned(rotations[cell], p - self.points[cell]),
+            None => places[cell] + frames[cell] * (p - self.points[cell]),
         })
     }
 
@@ -350,9 +349,9 @@ mod tests {
         let lattice = Lattice::new(&mask, width, 11.0);
         let map = |p: Point| Matrix::new(1.2, 0.3, -0.1, 0.8) * p + Point::new(3.0, 5.0);
         let places: Vec<Point> = lattice.points.iter().map(|p| map(*p)).collect();
-        let rotations = vec![Point::new(1.0, 0.0); places.len()];
+        let frames = vec![Matrix::identity(); places.len()];
         for p in [Point::new(40.2, 33.1), Point::new(88.0, 2.0), Point::new(-3.0, 71.0)] {
-            let carried = lattice.carried(&places, &rotations, p).expect("a cell");
+            let carried = lattice.carried(&places, &frames, p).expect("a cell");
             assert!((carried - map(p)).norm() < 1e-9, "{carried}");
         }
     }

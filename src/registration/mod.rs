@@ -11,6 +11,8 @@
 //!    minimum of the costs is a displacement *and its covariance*, so that an edge holds across itself and lets slide along itself, and a
 //!    uniform area lets go altogether. The lattice follows as rigidly as possible (`rigid`).
 //!
+//! 4. What is left at every vertex says how far the drawing is explained, and where least (`explained`).
+//!
 //! *Differences from the source*: patches are masked along the lattice, turn with it, and compare colour, ink and coverage with truncated
 //! differences; displacements have covariances; the beginning comes from the outlines.
 //!
@@ -18,6 +20,7 @@
 //! the beginning is not found.
 
 mod beginning;
+mod explained;
 mod lattice;
 mod levels;
 mod outline;
@@ -26,4 +29,4 @@ mod register;
 mod rigid;
 mod template;
 
-pub use register::{Pin, Registration, RegistrationError, RingPairs, register};
+pub use register::{Explained, Pin, Registration, RegistrationError, RingPairs, register};

@@ -1,7 +1,7 @@
 //! Beginnings of a registration: the interior that follows from outlines in correspondence.
 
 use super::lattice::Lattice;
-use super::rigid::{Rigid, Targets, turned};
+use super::rigid::{Rigid, Targets, turning};
 use crate::math::{Matrix, Point, point};
 use crate::solve::SolveError;
 
@@ -20,14 +20,27 @@ pub(super) struct RingPair {
     pub(super) pose: Vec<Point>,
 }
 
+impl RingPair {
+    /// The point of the pose's ring nearest to `p`, which is next to the nearest of its samples.
+    pub(super) fn nearest_of_pose(&self, p: Point) -> Point {
+        let count = self.pose.len();
+        let squared = |k: &usize| (self.pose[*k] - p).norm_squared();
+        let Some(nearest) = (0..count).min_by(|a, b| squared(a).total_cmp(&squared(b))) else {
+            return p;
+        };
+        let on_segment = |from: usize| {
+            let (a, b) = (self.pose[from], self.pose[(from + 1) % count]);
+            let (along, distance) = point::nearest_on_segment(p, a, b);
+            (distance, a + (b - a) * along)
+        };
+        let (before, after) = (on_segment((nearest + count - 1) % count), on_segment(nearest));
+        if before.0 < after.0 { before.1 } else { after.1 }
+    }
+}
+
 /// Where the vertices go when the outlines do: those near an outline as it moves and turns there, those near a pin as it moves, the others as
 /// rigidly as possible.
-pub(super) fn spread(
-    lattice: &Lattice,
-    rigid: &Rigid,
-    rings: &[RingPair],
-    pins: &[[Point; 2]],
-) -> Result<Vec<Point>, SolveError> {
+pub(super) fn spread(lattice: &Lattice, rings: &[RingPair], pins: &[[Point; 2]]) -> Result<Vec<Point>, SolveError> {
     let mut samples: Vec<(Point, Point, Point)> = Vec::new();
     let mut of_cell: Vec<Vec<usize>> = vec![Vec::new(); lattice.points.len()];
     for ring in rings {
@@ -64,7 +77,7 @@ pub(super) fn spread(
         let is_near = own.is_some_and(|k| (samples[k].0 - p).norm() < NEAR * lattice.spacing);
         let nearest = own.or_else(|| nearest_of(p, &mut (0..samples.len())));
         let (from, to, turn) = nearest.map_or((p, p, Point::new(1.0, 0.0)), |k| samples[k]);
-        places.push(to + turned(turn, p - from));
+        places.push(to + turning(turn) * (p - from));
         trust.push(Matrix::identity() * if is_near { 1.0 } else { FREE_TRUST });
     }
     for [from, to] in pins {
@@ -77,6 +90,7 @@ pub(super) fn spread(
         places: &places,
         trust: &trust,
     };
+    let rigid = Rigid::new(lattice, Matrix::identity());
     let mut spread = places.clone();
     for (stiffness, iterations) in ROUNDS {
         spread = rigid.solve(&spread, &targets, stiffness, iterations)?;

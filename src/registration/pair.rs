@@ -1,10 +1,9 @@
 //! One pose registered to the reference, level after level.
 
-use super::beginning::mean_residual;
 use super::lattice::Lattice;
 use super::levels::{LEVELS, Level};
 use super::register::{Pin, RegistrationError, RingPairs};
-use super::rigid::{Rigid, Targets, turned};
+use super::rigid::{Rigid, Targets};
 use super::template::{Fit, MOST_DIFFERENCE, Template, Window};
 use crate::appearance::{Appearance, ByteImage, PIXELS_PER_UNIT};
 use crate::math::{Matrix, Point};
@@ -13,7 +12,7 @@ use crate::math::{Matrix, Point};
 const FIRST_STIFFNESS: f64 = 30.0;
 const FIRST_ITERATIONS: usize = 10;
 /// Trust falls by a factor e when the best place in the window differs by this share of [`MOST_DIFFERENCE`].
-const DOUBT: f32 = 0.25;
+pub(super) const DOUBT: f32 = 0.25;
 /// A level ends when vertices move by less than this share of its step in the mean.
 const STILL: f64 = 0.1;
 
@@ -26,6 +25,18 @@ pub(super) struct Pair<'a> {
     pub(super) pins: Vec<Pin>,
     /// Which vertices are inside the figure, away from its edge.
     pub(super) inside: &'a [bool],
+}
+
+/// A pose in registration.
+pub(super) struct Registered {
+    /// By vertex, in working pixels.
+    pub(super) places: Vec<Point>,
+    /// By vertex, the linear map of what is around it.
+    pub(super) frames: Vec<Matrix>,
+    /// By vertex, how much the drawings still differ around it.
+    pub(super) residuals: Vec<f32>,
+    /// The number of the beginning.
+    pub(super) beginning: usize,
 }
 
 impl<'a> Pair<'a> {
@@ -51,23 +62,28 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// The places of the vertices, how much the drawings still differ there, and from which beginning.
+    /// The pose registered from the best of some beginnings.
     pub(super) fn registered(
         &self,
         points: &Template,
         templates: &[Template],
         beginnings: &[RingPairs],
-    ) -> Result<(Vec<Point>, f64, usize), RegistrationError> {
-        let rigid = Rigid::new(self.lattice);
-        let (beginning, number) = self.best_beginning(&rigid, points, beginnings)?;
-        let mut places = self.stiffened(&rigid, &beginning)?;
-        let mut residual = 0.0;
+    ) -> Result<Registered, RegistrationError> {
+        let beginning = self.best_beginning(points, beginnings)?;
+        let rigid = Rigid::new(self.lattice, beginning.form);
+        let mut places = self.stiffened(&rigid, &beginning.places)?;
+        let mut residuals = Vec::new();
         for (level, template) in LEVELS.iter().zip(templates) {
             let fits;
             (places, fits) = self.level(level, template, &rigid, places)?;
-            residual = mean_residual(&fits);
+            residuals = fits.iter().map(|fit| fit.residual).collect();
         }
-        Ok((places, residual, number))
+        Ok(Registered {
+            frames: rigid.frames(&places, 0),
+            places,
+            residuals,
+            beginning: beginning.number,
+        })
     }
 
     /// The vertices moved a little towards a rigid form, so that folds come out.
@@ -86,11 +102,11 @@ impl<'a> Pair<'a> {
         if self.pins.is_empty() {
             return;
         }
-        let rotations = rigid.rotations(places, 1);
+        let frames = rigid.frames(places, 1);
         let mut sums = vec![(0.0, Point::zeros()); targets.len()];
         for pin in &self.pins {
             if let Some((cell, _)) = self.lattice.cell_at(pin.from) {
-                let aside = turned(rotations[cell], self.lattice.points[cell] - pin.from);
+                let aside = frames[cell] * (self.lattice.points[cell] - pin.from);
                 sums[cell].0 += pin.trust;
                 sums[cell].1 += (pin.to + aside) * pin.trust;
             }
@@ -116,8 +132,8 @@ impl<'a> Pair<'a> {
         let floor = Matrix::identity() * (0.25 * window.step * window.step);
         let mut fits = Vec::new();
         for _ in 0..level.iterations {
-            let rotations = rigid.rotations(&places, 1);
-            fits = template.fits(&image, &places, &rotations, &window, level.temperature);
+            let frames = rigid.frames(&places, 1);
+            fits = template.fits(&image, &places, &frames, &window, level.temperature);
             let (mut targets, mut trust) = (Vec::new(), Vec::new());
             for (fit, place) in fits.iter().zip(&places) {
                 let confidence = f64::from(libm::expf(-fit.residual / (DOUBT * MOST_DIFFERENCE)));

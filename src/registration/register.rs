@@ -5,13 +5,13 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::beginning::{INSIDE, POINT_PX};
+use super::explained::Found;
 use super::lattice::Lattice;
 use super::levels::LEVELS;
-use super::pair::Pair;
-use super::rigid::Rigid;
+use super::pair::{Pair, Registered};
 use super::template::Template;
 use crate::appearance::{Appearance, ChannelImage, PIXELS_PER_UNIT};
-use crate::math::Point;
+use crate::math::{Matrix, Point};
 use crate::solve::SolveError;
 
 /// The lattice's spacing, in figure units.
@@ -19,7 +19,7 @@ const SPACING: f64 = 0.022;
 
 /// The trust in a pair of points that is certain and in one that is likely, beside some 100 of a vertex whose place is clear.
 const CERTAIN: f64 = 1e5;
-const LIKELY: f64 = 300.0;
+const LIKELY: f64 = 1000.0;
 
 /// Why drawings could not be registered.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -39,8 +39,8 @@ pub type RingPairs = Vec<(Vec<Point>, Vec<Point>)>;
 /// A place of the reference and the place of a pose that corresponds to it, in source units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pin {
-    pub(super) from: Point,
-    pub(super) to: Point,
+    pub(crate) from: Point,
+    pub(crate) to: Point,
     pub(super) trust: f64,
 }
 
@@ -66,6 +66,15 @@ impl Pin {
     }
 }
 
+/// How far the drawing of a pose is that of the reference, moved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Explained {
+    /// The share of the reference's figure that is found in the pose, up to 1.
+    pub share: f64,
+    /// Where it is found least: on the reference and on the pose, in source units.
+    pub least: [Point; 2],
+}
+
 /// Where the reference's places are in every pose.
 #[derive(Debug, Clone)]
 pub struct Registration {
@@ -78,7 +87,8 @@ pub struct Registration {
 struct RegisteredPose {
     appearance: Arc<Appearance>,
     places: Vec<Point>,
-    rotations: Vec<Point>,
+    frames: Vec<Matrix>,
+    explained: Explained,
     residual: f64,
 }
 
@@ -88,7 +98,7 @@ impl Registration {
     pub fn carried(&self, pose: usize, place: Point) -> Option<Point> {
         let registered = self.poses.get(pose)?.as_ref()?;
         let p = self.reference.to_pixels(place);
-        let carried = self.lattice.carried(&registered.places, &registered.rotations, p)?;
+        let carried = self.lattice.carried(&registered.places, &registered.frames, p)?;
         Some(registered.appearance.to_source(carried))
     }
 
@@ -96,6 +106,12 @@ impl Registration {
     #[must_use]
     pub fn residual(&self, pose: usize) -> Option<f64> {
         Some(self.poses.get(pose)?.as_ref()?.residual)
+    }
+
+    /// How much of what the reference shows is found in the drawing of `pose`, and where least; `None` as for [`carried`](Self::carried).
+    #[must_use]
+    pub fn explained(&self, pose: usize) -> Option<Explained> {
+        Some(self.poses.get(pose)?.as_ref()?.explained)
     }
 }
 
@@ -123,7 +139,7 @@ pub fn register(
     let inside: Vec<bool> = (lattice.points.iter())
         .map(|p| images[0].at(p.x as f32, p.y as f32)[4] >= INSIDE)
         .collect();
-    let registered: Vec<Option<(Vec<Point>, f64, usize)>> = (0..appearances.len())
+    let registered: Vec<Option<Registered>> = (0..appearances.len())
         .into_par_iter()
         .map(|pose| {
             let beginnings = beginnings.get(pose).map_or(&[][..], Vec::as_slice);
@@ -141,15 +157,26 @@ pub fn register(
         })
         .collect::<Result<_, RegistrationError>>()?;
     let chosen = (registered.iter())
-        .map(|registered| registered.as_ref().map_or(0, |(.., chosen)| *chosen))
+        .map(|registered| registered.as_ref().map_or(0, |registered| registered.beginning))
         .collect();
     let poses = (registered.into_iter().zip(appearances))
         .map(|(registered, appearance)| {
-            registered.map(|(places, residual, _)| RegisteredPose {
-                rotations: Rigid::new(&lattice).rotations(&places, 0),
-                appearance: Arc::clone(appearance),
-                places,
-                residual,
+            registered.map(|registered| {
+                let found = Found::new(&lattice, &registered);
+                let residual = registered.residuals.iter().map(|left| f64::from(*left)).sum::<f64>();
+                RegisteredPose {
+                    explained: Explained {
+                        share: found.share,
+                        least: [
+                            own.to_source(lattice.points[found.least]),
+                            appearance.to_source(registered.places[found.least]),
+                        ],
+                    },
+                    residual: residual / registered.residuals.len().max(1) as f64,
+                    appearance: Arc::clone(appearance),
+                    places: registered.places,
+                    frames: registered.frames,
+                }
             })
         })
         .collect();

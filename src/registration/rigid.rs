@@ -4,6 +4,8 @@
 //! the rotations at both ends. Source: Sorkine and Alexa 2007, by alternating the best rotations and a linear solve; every vertex has a
 //! target `m` with a trust `Q` that may differ by direction, as in the aperture problem of optical flow.
 //!
+//! What is squashed as a whole is compared with its squashed form: `x` is then the lattice at rest under a linear map.
+//!
 //! One Cholesky factorisation serves all alternations with the same trusts.
 
 use super::lattice::Lattice;
@@ -20,27 +22,34 @@ pub(super) struct Targets<'a> {
     pub(super) trust: &'a [Matrix],
 }
 
-/// `p` turned by the angle whose cosine and sine `turn` has.
-pub(super) fn turned(turn: Point, p: Point) -> Point {
-    Matrix::new(turn.x, -turn.y, turn.y, turn.x) * p
+/// The rotation by the angle whose cosine and sine `turn` has.
+pub(super) fn turning(turn: Point) -> Matrix {
+    Matrix::new(turn.x, -turn.y, turn.y, turn.x)
 }
 
-/// A lattice, at rest where its points are.
+/// A lattice, at rest where a linear map has its points.
 pub(super) struct Rigid<'a> {
     lattice: &'a Lattice,
+    form: Matrix,
 }
 
 impl<'a> Rigid<'a> {
-    pub(super) fn new(lattice: &'a Lattice) -> Self {
-        Self { lattice }
+    pub(super) fn new(lattice: &'a Lattice, form: Matrix) -> Self {
+        Self { lattice, form }
     }
 
     fn rest(&self, [a, b]: [usize; 2]) -> Point {
-        self.lattice.points[a] - self.lattice.points[b]
+        self.form * (self.lattice.points[a] - self.lattice.points[b])
+    }
+
+    /// By vertex, the linear map of what is around it: the form at rest, turned.
+    pub(super) fn frames(&self, places: &[Point], smoothings: usize) -> Vec<Matrix> {
+        let rotations = self.rotations(places, smoothings).into_iter();
+        rotations.map(|turn| turning(turn) * self.form).collect()
     }
 
     /// By vertex, cosine and sine of the best rotation of its edges, averaged with its neighbours' in `smoothings` steps.
-    pub(super) fn rotations(&self, places: &[Point], smoothings: usize) -> Vec<Point> {
+    fn rotations(&self, places: &[Point], smoothings: usize) -> Vec<Point> {
         let mut sums = vec![Point::zeros(); places.len()];
         for &[a, b] in &self.lattice.edges {
             let (rest, now) = (self.rest([a, b]), places[a] - places[b]);
@@ -96,8 +105,8 @@ impl<'a> Rigid<'a> {
             let rotations = self.rotations(&places, 0);
             let mut right = pulled.clone();
             for &[a, b] in &self.lattice.edges {
-                let (turn, rest) = ((rotations[a] + rotations[b]) * 0.5, self.rest([a, b]));
-                let turned = turned(turn, rest) * stiffness;
+                let turn = turning((rotations[a] + rotations[b]) * 0.5);
+                let turned = turn * self.rest([a, b]) * stiffness;
                 right[a] += turned;
                 right[b] -= turned;
             }

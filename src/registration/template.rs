@@ -82,12 +82,12 @@ impl Template {
         template
     }
 
-    /// How well the patch of every vertex fits `image` at the places of `window` around `places`, turned by `rotations`.
+    /// How well the patch of every vertex fits `image` at the places of `window` around `places`, under the linear maps `frames`.
     pub(super) fn fits(
         &self,
         image: &ByteImage,
         places: &[Point],
-        rotations: &[Point],
+        frames: &[Matrix],
         window: &Window,
         temperature: f32,
     ) -> Vec<Fit> {
@@ -101,7 +101,7 @@ impl Template {
             let mut costs = vec![0.0; offsets.len()];
             vectorised(
                 #[inline(always)]
-                || self.costs(image, v, places[v], rotations[v], (window.reach, &offsets), &mut costs),
+                || self.costs(image, v, places[v], &frames[v], (window.reach, &offsets), &mut costs),
             );
             soft_minimum(&costs, &displacements, temperature)
         };
@@ -116,7 +116,7 @@ impl Template {
         image: &ByteImage,
         v: usize,
         place: Point,
-        turn: Point,
+        frame: &Matrix,
         (reach, offsets): (usize, &[usize]),
         costs: &mut [f32],
     ) {
@@ -128,9 +128,8 @@ impl Template {
             if weight <= 0.0 {
                 continue;
             }
-            let x = (place.x + turn.x * offset.x - turn.y * offset.y) as f32;
-            let y = (place.y + turn.y * offset.x + turn.x * offset.y) as f32;
-            let around = image.around(x, y, reach);
+            let sampled = place + frame * offset;
+            let around = image.around(sampled.x as f32, sampled.y as f32, reach);
             let weight = weight / STEPS_PER_UNIT;
             for (cost, &offset) in costs.iter_mut().zip(offsets) {
                 *cost += weight * pixel.difference(&around[offset]).min(MOST) as f32;

@@ -33,8 +33,8 @@ const STILL: f64 = 0.01;
 const HALVINGS: usize = 6;
 
 /// What the squared distance from a target weighs, with lengths in roots of the pose's area. Displaced by a small share `d`, a vertex costs about
-/// `4 d^2` in distortion, however fine the mesh is: with this weight distortion moves it by a tenth of what it would.
-const TARGET_WEIGHT: f64 = 40.0;
+/// `4 d^2` in distortion, however fine the mesh is: with this weight distortion moves it by a fortieth of what it would.
+const TARGET_WEIGHT: f64 = 160.0;
 
 /// Per pose, per vertex: where it should be. A pose without targets has none for any vertex.
 pub(super) type Targets = [Option<Vec<Option<Point>>>];
