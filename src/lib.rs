@@ -56,6 +56,8 @@ pub mod mesh;
 // Stages, as data flows.
 pub mod input;
 
+pub mod parts;
+
 pub mod appearance;
 
 pub mod matching;

@@ -15,6 +15,7 @@ mod art;
 mod blending;
 mod boundaries;
 mod build;
+mod canvas;
 mod character;
 mod deformed;
 mod drawings;
@@ -28,6 +29,7 @@ mod layer;
 mod layout;
 mod mapping;
 mod named;
+mod parts;
 mod reach;
 mod report;
 mod sides;
@@ -44,12 +46,13 @@ pub use landmarks::INTERIOR_DEPTH;
 pub use layer::{LayerShape, PosedLayer};
 pub use layout::automatic_places;
 pub use mapping::{map_layer, map_layer_observed};
+pub use parts::LayerParts;
 pub use reach::{Reach, ReachOptions, ShapePoint, reach, reach_landmarks, reach_near};
 pub use report::{MappingReport, Stage};
 pub use spec::{
-    ArtChoice, Attachment, CharacterSpec, DeformedCopy, DrawnPose, Facing, HandleMove, LandmarkSpec, LayerSpec,
-    MeshOptions, PathSpec, Places, PoseShape, PoseSpec, SpaceSpec, SpecError, SvgSource, TextureSpec, UnsharedHoles,
-    WeightOptions,
+    ArtChoice, Attachment, CameraRule, CharacterSpec, DeformedCopy, DrawnPose, Facing, HandleMove, LandmarkSpec,
+    LayerRole, LayerSpec, MeshOptions, PathSpec, Places, PoseShape, PoseSpec, ShrunkCopy, SpaceSpec, SpecError,
+    SvgSource, TextureSpec, UnsharedHoles, WeightOptions,
 };
 pub use triangulation::{Refinement, triangulate_polygons};
 pub use weighting::{EditableWeights, checked_weights, editable_weights};

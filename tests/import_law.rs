@@ -7,12 +7,14 @@ use std::path::{Path, PathBuf};
 const FOUNDATIONS: [&str; 4] = ["math", "mesh", "outline", "solve"];
 
 /// What each stage may use of other stages: types that it consumes or hands on.
-const STAGES: [(&str, &[&str]); 14] = [
+const STAGES: [(&str, &[&str]); 15] = [
     ("animation", &[]),
     // Paths of other crates become and are made of drawings' and frames' curves.
     ("interop", &["input", "render"]),
     // OBJ files hold forms.
     ("input", &["shape3d"]),
+    // Parts are known by their colours.
+    ("parts", &["input"]),
     ("appearance", &["input"]),
     ("matching", &["appearance"]),
     ("registration", &["appearance"]),

@@ -263,3 +263,44 @@ fn frames_are_the_same_for_any_number_of_threads() {
         assert!(bytes("1") == bytes("3"), "{}", name.display());
     }
 }
+
+#[test]
+fn a_reflected_pose_reflects_its_layers_together() {
+    let workshop = Workshop::new();
+    let boxed = |name: &str, columns: std::ops::Range<u32>, rows: std::ops::Range<u32>, colour: [u8; 4]| {
+        workshop.picture(name, |x, y| {
+            if columns.contains(&x) && rows.contains(&y) {
+                colour
+            } else {
+                [0; 4]
+            }
+        });
+    };
+    boxed("body.png", 10..20, 8..32, [200, 40, 40, 255]);
+    boxed("arm.png", 22..34, 14..20, [40, 40, 200, 255]);
+    let pose = |name: &str, at: u32, more: &str| {
+        format!(
+            "[[pose]]\nname = \"{name}\"\nsource = {{ body = \"body.png\", arm = \"arm.png\" }}\nat = [{at}, 0]\n{more}"
+        )
+    };
+    let layers = "[[layer]]\nname = \"body\"\n[[layer]]\nname = \"arm\"\n[animation]\ncamera = \"drawing\"\n";
+    workshop.scene(&format!(
+        "{}{}{layers}",
+        pose("a", 0, ""),
+        pose("b", 1, "mirror = true\n")
+    ));
+    let scene = Scene::open(&workshop.path("scene.toml")).expect("a scene");
+    let character = scene.character([40, 40], 1).expect("a character");
+    let [drawn, reflected] = [[1.0, 0.0], [0.0, 1.0]].map(|weights| character.frame_of(&weights).expect("a frame"));
+    // The figure reaches from column 10 to 34, and stays there.
+    for (k, pixel) in drawn.pixels.iter().enumerate() {
+        let (x, y) = (k % 40, k / 40);
+        let other = if (4..44).contains(&x) {
+            reflected.pixels[y * 40 + 43 - x]
+        } else {
+            [0; 4]
+        };
+        let off = pixel.iter().zip(other).map(|(a, b)| a.abs_diff(b)).max();
+        assert!(off <= Some(40), "{pixel:?} and {other:?} at ({x}, {y})");
+    }
+}

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use inbetween::animation::Background;
 use inbetween::export::{png_bytes, svg_text};
-use inbetween::pipeline::checked_weights;
+use inbetween::pipeline::{CameraRule, checked_weights};
 use inbetween::scene::Scene;
 
 use super::output::Output;
-use super::values::{Grid, Numbers, background, supersample};
+use super::values::{Grid, Numbers, background, camera, supersample};
 use super::{Failure, Verbosity};
 
 /// Render one frame of a scene
@@ -43,6 +43,9 @@ pub(crate) struct Arguments {
     /// Columns and rows, such as 1920x1080; the scene's otherwise
     #[arg(long, value_name = "WxH")]
     size: Option<Grid>,
+    /// What the frame shows: fit (all poses and the whole animation) or drawing (the drawings' own canvas); the scene's otherwise
+    #[arg(long, value_name = "RULE", value_parser = camera)]
+    camera: Option<CameraRule>,
     /// What is behind the character: transparent, white, black, #rrggbb or #rrggbbaa; the scene's otherwise
     #[arg(long, value_name = "COLOUR", value_parser = background)]
     background: Option<Background>,
@@ -60,7 +63,8 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
             arguments.output.display()
         )));
     }
-    let scene = Scene::open(&arguments.scene)?;
+    let mut scene = Scene::open(&arguments.scene)?;
+    scene.camera = arguments.camera.unwrap_or(scene.camera);
     if let Some(Numbers(weights)) = &arguments.weights {
         checked_weights(weights, &scene.names()).context("--weights")?;
     }

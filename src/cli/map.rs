@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use inbetween::pipeline::map_layer_observed;
 use inbetween::scene::Scene;
 
-use super::layer;
+use super::layer::{self, Chosen};
 use super::output::Output;
 use super::stage_table::{self, StageClock};
 use super::{Failure, Verbosity};
@@ -35,17 +35,26 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
     let scene = Scene::open(&arguments.scene)?;
-    let scene = layer::chosen(scene, arguments.layer.as_deref())?;
+    let Chosen {
+        scene,
+        layer,
+        outlines,
+        notes,
+    } = layer::chosen(scene, arguments.layer.as_deref())?;
     let output = Output::open(&arguments.output)?;
     let mut clock = StageClock::start();
-    let layer = scene.layer_spec(0)?;
     let observed = map_layer_observed(&layer, &mut |stage| clock.begins(stage));
     clock.stop();
     let (mapping, report) = observed.map_err(|error| scene.refusal(error))?;
-    for note in &report.notes {
+    for note in notes.iter().chain(&report.notes) {
         verbosity.note(&format!("note: {note}"));
     }
-    output.write(mapping.to_json().as_bytes())?;
+    let is_one_of_several = arguments.layer.is_some() || outlines.iter().any(|parts| parts.len() > 1);
+    output.write(
+        mapping
+            .to_json_of(is_one_of_several.then_some(layer.name.as_str()), &outlines)
+            .as_bytes(),
+    )?;
     if arguments.report {
         for line in stage_table::lines(&layer, &mapping, &report, &clock) {
             verbosity.note(&line);

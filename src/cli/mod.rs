@@ -3,6 +3,7 @@
 //! Exit codes: 0 done, 1 bad input or failed work, 2 wrong usage. Results go to files or standard output, everything
 //! else to standard error.
 
+mod add;
 mod blend;
 mod check;
 #[cfg(feature = "explorer")]
@@ -49,6 +50,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Verb {
     New(new::Arguments),
+    Add(add::Arguments),
     Render(render::Arguments),
     Frame(frame::Arguments),
     Map(map::Arguments),
@@ -107,6 +109,7 @@ pub(crate) fn run() -> ExitCode {
     };
     let outcome = match arguments.verb {
         Verb::New(verb) => new::run(&verb, verbosity),
+        Verb::Add(verb) => add::run(&verb, verbosity),
         Verb::Render(verb) => render::run(&verb, verbosity),
         Verb::Frame(verb) => frame::run(&verb, verbosity),
         Verb::Map(verb) => map::run(&verb, verbosity),

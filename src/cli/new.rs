@@ -4,19 +4,22 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use inbetween::export::PendingFile;
-use inbetween::pipeline::{automatic_places, map_layer};
+use inbetween::input::{BitmapOptions, InputError, Picture, PictureChoice, frame_count, read_bitmap};
+use inbetween::pipeline::Build;
 use inbetween::scene::{NewPose, Scene, scene_text};
 use inbetween::weights::arrange;
 
+use super::values::Grid;
 use super::{Failure, Verbosity};
 
 /// The kinds of drawings, by suffix.
-const SUFFIXES: [&str; 7] = ["png", "jpg", "jpeg", "webp", "gif", "bmp", "svg"];
+const SUFFIXES: [&str; 10] = ["png", "apng", "jpg", "jpeg", "webp", "gif", "bmp", "tif", "tiff", "svg"];
 
 /// Write a scene file for some drawings
 ///
 /// Writes DIR/scene.toml with one pose a drawing, named after its file. The drawings are mapped onto one another to lay the poses
-/// out: those that are alike come near one another. They are taken in the order of the numbers in their names. If they cannot be mapped, the poses lie evenly on a circle and
+/// out: those that are alike come near one another. They are taken in the order of the numbers in their names; an animated GIF, APNG or
+/// WebP gives a pose a frame, a sheet one a cell (--cells). If they cannot be mapped, the poses lie evenly on a circle and
 /// a note says why. What was taken for the figure is said for every drawing; one that cannot be used is refused. Drawings that are not in
 /// DIR are copied into it, so that the folder is complete. An existing scene file is only overwritten with --force.
 #[derive(clap::Args)]
@@ -26,9 +29,12 @@ const SUFFIXES: [&str; 7] = ["png", "jpg", "jpeg", "webp", "gif", "bmp", "svg"];
 pub(crate) struct Arguments {
     /// The folder of the scene; made if it does not exist
     dir: PathBuf,
-    /// The drawings: PNG, JPEG, WebP, GIF, BMP or SVG
+    /// The drawings: PNG, JPEG, WebP, GIF, BMP, TIFF or SVG
     #[arg(required = true, value_name = "POSE")]
     poses: Vec<PathBuf>,
+    /// Sheets: how many columns and rows of cells each drawing has, such as 4x2; a pose for every cell that is not empty
+    #[arg(long, value_name = "COLSxROWS")]
+    cells: Option<Grid>,
     /// Write over the scene file and the drawings of an earlier run
     #[arg(long)]
     force: bool,
@@ -51,7 +57,14 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         )
         .into());
     }
-    let (mut poses, copies) = plan(arguments)?;
+    let Plan {
+        mut poses,
+        copies,
+        notes,
+    } = plan(arguments)?;
+    for note in &notes {
+        verbosity.note(&format!("note: {note}"));
+    }
     std::fs::create_dir_all(&arguments.dir)
         .with_context(|| format!("cannot make the folder {}", arguments.dir.display()))?;
     let replaced: Vec<bool> = copies.iter().map(|copy| copy.target.exists()).collect();
@@ -77,10 +90,19 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     Ok(())
 }
 
-fn plan(arguments: &Arguments) -> anyhow::Result<(Vec<NewPose>, Vec<Copy>)> {
+/// What a scene is made of, before anything is written.
+struct Plan {
+    poses: Vec<NewPose>,
+    copies: Vec<Copy>,
+    /// What is left out of animated files and sheets.
+    notes: Vec<String>,
+}
+
+fn plan(arguments: &Arguments) -> anyhow::Result<Plan> {
     let folder = arguments.dir.canonicalize().ok();
     let mut poses: Vec<NewPose> = Vec::new();
     let mut copies: Vec<Copy> = Vec::new();
+    let mut notes: Vec<String> = Vec::new();
     let mut paths: Vec<&PathBuf> = arguments.poses.iter().collect();
     paths.sort_by_cached_key(|path| natural_key(path));
     for path in paths {
@@ -119,22 +141,96 @@ fn plan(arguments: &Arguments) -> anyhow::Result<(Vec<NewPose>, Vec<Copy>)> {
                 name
             }
         };
-        if poses.iter().any(|pose| pose.source == source) {
+        if poses.iter().any(|pose: &NewPose| pose.source == source) {
             bail!("{} is given twice; give every drawing once", path.display());
         }
         let stem = path
             .file_stem()
             .map(|s| s.to_string_lossy().into_owned())
             .unwrap_or_default();
-        let mut name = stem.clone();
-        let mut number = 2;
-        while poses.iter().any(|pose| pose.name == name) {
-            name = format!("{stem}-{number}");
-            number += 1;
+        let pictures = pictures_of(path, arguments.cells, &mut notes)?;
+        for (number, &picture) in pictures.iter().enumerate() {
+            let own = match pictures.len() {
+                1 => stem.clone(),
+                _ => format!("{stem}-{}", number + 1),
+            };
+            let mut name = own.clone();
+            let mut further = 2;
+            while poses.iter().any(|pose| pose.name == name) {
+                name = format!("{own}-{further}");
+                further += 1;
+            }
+            let source = source.clone();
+            poses.push(NewPose {
+                name,
+                source,
+                picture,
+                at: None,
+            });
         }
-        poses.push(NewPose { name, source, at: None });
     }
-    Ok((poses, copies))
+    Ok(Plan { poses, copies, notes })
+}
+
+/// What of a drawing's file are poses: the frames of an animated one, the cells of a sheet, row by row; those in which nothing is drawn,
+/// or what an earlier one has, are left out and told of.
+fn pictures_of(path: &Path, cells: Option<Grid>, notes: &mut Vec<String>) -> anyhow::Result<Vec<PictureChoice>> {
+    let is_svg = path
+        .extension()
+        .is_some_and(|suffix| suffix.eq_ignore_ascii_case("svg"));
+    if is_svg {
+        return match cells {
+            None => Ok(vec![PictureChoice::Only]),
+            Some(_) => bail!("{}: an SVG file has no cells; leave out --cells", path.display()),
+        };
+    }
+    let bytes = std::fs::read(path).with_context(|| format!("cannot read the drawing {}", path.display()))?;
+    let (choices, what): (Vec<PictureChoice>, &str) = match cells {
+        Some(Grid(of)) => {
+            let [columns, rows] = of;
+            let at = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
+            (at.map(|at| PictureChoice::Cell { at, of }).collect(), "cells")
+        }
+        // A file that cannot be read is refused with its cause when it is read.
+        None => match frame_count(&bytes) {
+            Ok(count) if count > 1 => ((0..count).map(PictureChoice::Frame).collect(), "frames"),
+            _ => return Ok(vec![PictureChoice::Only]),
+        },
+    };
+    let (mut found, mut seen): (Vec<PictureChoice>, Vec<Picture>) = (Vec::new(), Vec::new());
+    let (mut empty, mut repeated) = (0, 0);
+    for &picture in &choices {
+        let options = BitmapOptions {
+            picture,
+            ..BitmapOptions::default()
+        };
+        match read_bitmap(&bytes, &options) {
+            Err(InputError::NothingDrawn { .. }) => empty += 1,
+            Ok(drawing) if seen.contains(&drawing.picture) => repeated += 1,
+            Ok(drawing) => {
+                seen.push(drawing.picture);
+                found.push(picture);
+            }
+            // It is refused, with its pose, when the scene is read.
+            Err(_) => found.push(picture),
+        }
+    }
+    if found.is_empty() {
+        bail!(
+            "{}: nothing is drawn in any of its {} {what}",
+            path.display(),
+            choices.len()
+        );
+    }
+    if empty + repeated > 0 {
+        notes.push(format!(
+            "{}: {} of {} {what} are poses; {empty} are empty, {repeated} repeat an earlier one",
+            path.display(),
+            found.len(),
+            choices.len()
+        ));
+    }
+    Ok(found)
 }
 
 fn write(copies: &[Copy], scene_file: &Path, poses: &mut [NewPose], verbosity: Verbosity) -> anyhow::Result<()> {
@@ -142,12 +238,12 @@ fn write(copies: &[Copy], scene_file: &Path, poses: &mut [NewPose], verbosity: V
         PendingFile::write_whole(&copy.target, &copy.bytes)?;
     }
     let scene = Scene::parse(&scene_text(poses), scene_file)?;
-    let places = match map_layer(&scene.layer_spec(0)?) {
-        Ok((mapping, report)) => {
-            for note in &report.notes {
+    let places = match Build::new(&scene.spec()?) {
+        Ok(build) => {
+            for note in build.notes() {
                 verbosity.note(&format!("note: {note}"));
             }
-            automatic_places(&mapping)
+            build.places().to_vec()
         }
         Err(error) => {
             verbosity.note(&format!(

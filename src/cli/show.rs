@@ -8,7 +8,7 @@ use inbetween::render::diagram::{self, Diagram, DiagramPose, Sections};
 use inbetween::scene::Scene;
 use inbetween::weights::WeightProvider as _;
 
-use super::layer;
+use super::layer::{self, Chosen};
 use super::output::Output;
 use super::{Failure, Verbosity};
 
@@ -31,13 +31,15 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
-    let scene = layer::chosen(Scene::open(&arguments.scene)?, arguments.layer.as_deref())?;
+    let Chosen {
+        scene, layer, notes, ..
+    } = layer::chosen(Scene::open(&arguments.scene)?, arguments.layer.as_deref())?;
     let output = Output::open(&arguments.output)?;
     let scene = scene.with_automatic_places()?;
     let in_scene = || scene.file.display().to_string();
     let provider = scene.weights(None)?;
-    let (mapping, report) = map_layer(&scene.layer_spec(0)?).map_err(|error| scene.refusal(error))?;
-    for note in &report.notes {
+    let (mapping, report) = map_layer(&layer).map_err(|error| scene.refusal(error))?;
+    for note in notes.iter().chain(&report.notes) {
         verbosity.note(&format!("note: {note}"));
     }
     let poses: Vec<DiagramPose> = scene

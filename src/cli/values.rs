@@ -1,6 +1,7 @@
 //! Values as they are written on the command line.
 
 use inbetween::animation::Background;
+use inbetween::pipeline::CameraRule;
 
 /// Numbers separated by commas: a place, or weights.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,6 +99,14 @@ impl FrameNumbers {
 pub(crate) fn background(text: &str) -> Result<Background, String> {
     text.parse()
         .map_err(|allowed| format!("'{text}' is no background; write {allowed}"))
+}
+
+/// What frames show.
+pub(crate) fn camera(text: &str) -> Result<CameraRule, String> {
+    let found = CameraRule::NAMED.into_iter().find(|(name, _)| *name == text);
+    found
+        .map(|(_, rule)| rule)
+        .ok_or_else(|| format!("'{text}' is no camera; write fit or drawing"))
 }
 
 /// Frames a second.

@@ -76,8 +76,7 @@ fn picture_json(picture: &Picture) -> Value {
 fn matched(bench: &Workbench, layer: usize, samples: usize, known: &[&str]) -> Value {
     let (shape, report) = (&bench.layers()[layer], bench.report(layer));
     let mapping = shape.mapping();
-    let scene = bench.scene().of_layer(layer);
-    let drawn = scene.drawn_poses();
+    let drawn = bench.spec().layers[layer].drawn_poses();
     let texture_of = texture_of(bench, layer);
     let curves: Vec<ArcLength> = mapping
         .outlines
@@ -188,7 +187,9 @@ pub(super) fn drawing(request: &Request, session: &Session) -> Result<Response, 
         Some(scene) => scene,
         None => shown.framed_scene()?,
     };
-    let layer = index(request, "layer", scene.layers.len().max(1))?;
+    // Loose parts are layers that the scene does not know.
+    let of_bench = shown.bench.as_deref().map_or(0, |bench| bench.layers().len());
+    let layer = index(request, "layer", scene.layers.len().max(of_bench).max(1))?;
     let pose = index(request, "pose", scene.poses.len())?;
     let longest = match request.value("max") {
         None => LONGEST_SIDE,
@@ -202,12 +203,11 @@ pub(super) fn drawing(request: &Request, session: &Session) -> Result<Response, 
     let root = own_pose.and_then(|pose| Some(own.drawing_of(pose)?.0));
     let root = root.ok_or_else(|| Refusal::bad(format!("pose {pose} has no drawing in layer {layer}")))?;
     let kept = shown.bench.as_deref().and_then(|bench| {
-        let theirs = bench.scene().of_layer(layer);
+        let theirs = bench.spec().layers.get(layer)?;
         let name = &own.poses[root].name;
-        let k = theirs
-            .drawn_poses()
-            .iter()
-            .position(|&pose| theirs.poses[pose].name == *name)?;
+        let pose = theirs.poses.iter().position(|pose| pose.name == *name)?;
+        let (root, _) = theirs.drawing_of(pose)?;
+        let k = theirs.drawn_poses().iter().position(|&pose| pose == root)?;
         bench.drawings(layer).get(k)
     });
     let drawing: Arc<Drawing> = match kept {

@@ -13,7 +13,7 @@ use serde::Deserialize;
 use serde_json::Value;
 use toml_edit::DocumentMut;
 
-use super::pictures::reflected;
+use super::pictures::as_drawn;
 use super::problem::{Problem, Refusal, Where};
 
 /// One edit. The fields are those that the page of the [explorer](super) lists.
@@ -195,7 +195,7 @@ impl Context<'_> {
     fn as_written(&self, layer: Option<&str>, pose: &str, place: Point) -> Point {
         let Some(bench) = self.bench else { return place };
         let shape = |layer: &str| bench.layers().iter().position(|shape| shape.name() == layer);
-        reflected(bench, layer.and_then(shape).unwrap_or(0), pose, place)
+        as_drawn(bench, layer.and_then(shape).unwrap_or(0), pose, place)
     }
 }
 

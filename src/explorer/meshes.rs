@@ -14,7 +14,7 @@ pub(super) fn puppet(session: &Session) -> Result<Response, Refusal> {
     let bench = shown.bench()?;
     let layer = |k: usize| {
         let shape = &bench.layers()[k];
-        let drawn = bench.scene().of_layer(k).drawn_poses();
+        let drawn = bench.spec().layers[k].drawn_poses();
         let texture = |index: usize| {
             json!({
                 "pose": drawn[index],

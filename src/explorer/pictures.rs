@@ -2,7 +2,7 @@
 
 use inbetween::export::texture_png;
 use inbetween::math::Point;
-use inbetween::pipeline::{Facing, LayerShape};
+use inbetween::pipeline::LayerShape;
 use inbetween::render::{PuppetTexture, Texture};
 use inbetween::scene::Workbench;
 use serde_json::{Value, json};
@@ -13,22 +13,27 @@ use super::problem::Refusal;
 /// How many texels a pixel of the animation's frames may have: pages are zoomed, and screens are finer than frames.
 const TEXELS_A_PIXEL: f64 = 2.0;
 
-/// A place on a pose of a layer, from the file's coordinates to drawing units or back: reflected where the pose is.
-pub(super) fn reflected(bench: &Workbench, layer: usize, pose: &str, place: Point) -> Point {
-    let scene = bench.scene().of_layer(layer);
-    let root = (scene.poses.iter().position(|own| own.name == pose)).and_then(|index| scene.drawing_of(index));
-    match root {
-        Some((root, source)) if source.facing == Facing::Mirrored => {
-            let drawing = scene.drawn_poses().iter().position(|drawn| *drawn == root);
-            drawing.map_or(place, |drawing| bench.as_used(layer, drawing, place))
-        }
-        _ => place,
-    }
+/// A place on a pose of a layer, from the file's coordinates to drawing units: reflected and moved as the pose is.
+pub(super) fn as_used(bench: &Workbench, layer: usize, pose: &str, place: Point) -> Point {
+    drawing_of(bench, layer, pose).map_or(place, |drawing| bench.as_used(layer, drawing, place))
+}
+
+/// The place of the file that [`as_used`] takes to `place`.
+pub(super) fn as_drawn(bench: &Workbench, layer: usize, pose: &str, place: Point) -> Point {
+    drawing_of(bench, layer, pose).map_or(place, |drawing| bench.as_drawn(layer, drawing, place))
+}
+
+/// Which drawing of a layer a pose shows.
+fn drawing_of(bench: &Workbench, layer: usize, pose: &str) -> Option<usize> {
+    let spec = bench.spec().layers.get(layer)?;
+    let index = spec.poses.iter().position(|own| own.name == pose)?;
+    let (root, _) = spec.drawing_of(index)?;
+    spec.drawn_poses().iter().position(|drawn| *drawn == root)
 }
 
 /// The texture of each pose of a layer.
 pub(super) fn texture_of(bench: &Workbench, layer: usize) -> Vec<usize> {
-    bench.scene().of_layer(layer).shown_drawings()
+    bench.spec().layers[layer].shown_drawings()
 }
 
 /// The shape of the layer that the body of a request is about.

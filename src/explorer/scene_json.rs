@@ -3,13 +3,13 @@
 use inbetween::animation::Background;
 use inbetween::blend::{FrameGuard, Reference, Stretch};
 use inbetween::math::Point;
-use inbetween::pipeline::{ArtChoice, Facing, HandleMove};
-use inbetween::render::ColourBlend;
+use inbetween::pipeline::{ArtChoice, Facing, HandleMove, LayerShape};
+use inbetween::render::{ColourBlend, Sampling};
 use inbetween::scene::{Layout, PoseSource, Provider, Scene, Workbench};
 use inbetween::weights::{Radial, Range};
 use serde_json::{Map, Value, json};
 
-use super::pictures::reflected;
+use super::pictures::as_used;
 use super::session::Session;
 
 /// `GET api/scene`.
@@ -91,10 +91,11 @@ fn of(scene: &Scene, bench: Option<&Workbench>) -> Value {
         "texture": {
             "sharpness": scene.texture_sharpness,
             "blending": match scene.colour_blend { ColourBlend::Plain => "plain", ColourBlend::Linear => "linear" },
+            "sampling": name_of(&Sampling::NAMED, &scene.sampling),
             "drawing": match scene.art { ArtChoice::Curves => "curves", ArtChoice::Pixels => "pixels" },
         },
         "mesh": {"simplify": scene.mesh.simplify.tolerance, "edge_length": scene.mesh.refine.edge_length},
-        "layers": layers(scene),
+        "layers": layers(scene, bench),
         "landmarks": landmarks(scene, bench),
         "animation": animation(scene),
         "box": plane.map(|(low, high)| [low, high]),
@@ -138,7 +139,11 @@ fn pose_json(scene: &Scene, bench: Option<&Workbench>, index: usize) -> Value {
         }
         PoseSource::Layered => "layered",
     };
-    let layers: Vec<usize> = if scene.layers.is_empty() {
+    let layers: Vec<usize> = if let Some(bench) = bench {
+        let shapes = bench.layers().iter().enumerate();
+        let has_pose = |shape: &LayerShape| shape.mapping().poses.index_of(&pose.name).is_some();
+        shapes.filter(|(_, shape)| has_pose(shape)).map(|(k, _)| k).collect()
+    } else if scene.layers.is_empty() {
         vec![0]
     } else {
         (0..scene.layers.len())
@@ -157,7 +162,12 @@ fn name_of<T: PartialEq>(named: &[(&'static str, T)], choice: &T) -> Option<&'st
     named.iter().find(|(_, own)| own == choice).map(|(name, _)| *name)
 }
 
-fn layers(scene: &Scene) -> Vec<Value> {
+fn layers(scene: &Scene, bench: Option<&Workbench>) -> Vec<Value> {
+    // Those that the drawings fell into, too.
+    if let Some(bench) = bench {
+        let of_shape = |shape: &LayerShape| json!({"name": shape.name(), "poses": shape.poses()});
+        return bench.layers().iter().map(of_shape).collect();
+    }
     if scene.layers.is_empty() {
         let all: Vec<usize> = (0..scene.poses.len()).collect();
         return vec![json!({"name": scene.short_name(), "poses": all})];
@@ -168,7 +178,7 @@ fn layers(scene: &Scene) -> Vec<Value> {
 
 /// A place of the file in drawing units.
 fn used(bench: Option<&Workbench>, layer: usize, pose: &str, place: Point) -> [f64; 2] {
-    bench.map_or(place, |bench| reflected(bench, layer, pose, place)).into()
+    bench.map_or(place, |bench| as_used(bench, layer, pose, place)).into()
 }
 
 /// What is said of each pose, by its name.

@@ -18,10 +18,10 @@
 
 use serde_json::{Value, json};
 
-use super::gltf_buffer::{GltfBuffer, LINEAR, LINEAR_MIPMAP_LINEAR, container, push, without_empty_lists};
+use super::gltf_buffer::{GltfBuffer, LINEAR, LINEAR_MIPMAP_LINEAR, NEAREST, container, push, without_empty_lists};
 use super::puppet_motion::{LayerMotion, PuppetMotion, PuppetReport, changes, texture_png};
 use crate::math::Point;
-use crate::render::{PuppetLayer, PuppetTexture};
+use crate::render::{PuppetLayer, PuppetTexture, Sampling};
 
 /// Pixels of the frame that are one unit.
 pub const PIXELS_A_UNIT: f64 = 100.0;
@@ -221,6 +221,10 @@ impl File {
         let textures: Vec<Value> = (0..self.images.len())
             .map(|image| json!({ "sampler": 0, "source": image }))
             .collect();
+        let (magnified, minified) = match motion.puppet.sampling {
+            Sampling::Smooth => (LINEAR, LINEAR_MIPMAP_LINEAR),
+            Sampling::Nearest => (NEAREST, NEAREST),
+        };
         let mut document = json!({
             "asset": {
                 "version": "2.0",
@@ -249,8 +253,8 @@ impl File {
             "textures": textures,
             "images": self.images,
             "samplers": [{
-                "magFilter": LINEAR,
-                "minFilter": LINEAR_MIPMAP_LINEAR,
+                "magFilter": magnified,
+                "minFilter": minified,
                 "wrapS": CLAMP_TO_EDGE,
                 "wrapT": CLAMP_TO_EDGE,
             }],

@@ -12,6 +12,7 @@ const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 /// Filters of textures.
+pub(super) const NEAREST: u32 = 9728;
 pub(super) const LINEAR: u32 = 9729;
 pub(super) const LINEAR_MIPMAP_LINEAR: u32 = 9987;
 

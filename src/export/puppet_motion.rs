@@ -202,7 +202,7 @@ pub(super) fn changes<T: PartialEq>(values: &[T]) -> Vec<usize> {
 #[cfg(test)]
 pub(super) mod testing {
     use super::*;
-    use crate::render::{PuppetLayerFrame, PuppetPose};
+    use crate::render::{PuppetLayerFrame, PuppetPose, Sampling};
 
     /// A puppet of two squares in a frame of 200 x 100. The first turns once in two seconds while its first texture gives way to
     /// the second; the second one stands still, comes before the first at half time, and vanishes at the end.
@@ -248,6 +248,7 @@ pub(super) mod testing {
             textures,
         };
         let puppet = Puppet {
+            sampling: Sampling::Smooth,
             size: [200, 100],
             layers: vec![
                 layer(

@@ -22,7 +22,7 @@ use super::keys::place_keys;
 use super::puppet_motion::{LayerMotion, PuppetMotion, PuppetReport, changes, texture_png};
 use super::{ExportError, PendingFile};
 use crate::math::Point;
-use crate::render::PuppetLayer;
+use crate::render::{PuppetLayer, Sampling};
 
 /// Decimals of coordinates and times: a vertex is off by at most a few of these units.
 const DECIMALS: i32 = 4;
@@ -132,12 +132,16 @@ pub fn spine_files(motion: &PuppetMotion<'_>, stem: &str) -> Result<SpineFiles, 
     }
     let mut pictures = Vec::new();
     let mut atlas = String::new();
+    let filter = match motion.puppet.sampling {
+        Sampling::Smooth => "Linear",
+        Sampling::Nearest => "Nearest",
+    };
     for slot in &slots {
         let texture = &motion.puppet.layers[slot.layer].textures[slot.texture];
         let file = format!("{stem}-{}.png", slot.name);
         let (width, height) = (texture.width, texture.height);
         atlas.push_str(&format!(
-            "{file}\nsize: {width}, {height}\nfilter: Linear, Linear\n{}\nbounds: 0, 0, {width}, {height}\n\n",
+            "{file}\nsize: {width}, {height}\nfilter: {filter}, {filter}\n{}\nbounds: 0, 0, {width}, {height}\n\n",
             slot.name
         ));
         pictures.push((file, texture_png(texture).map_err(|error| error.to_string())?));

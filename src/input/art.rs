@@ -42,6 +42,16 @@ impl Art {
         })
     }
 
+    /// The drawing moved by `shift`.
+    #[must_use]
+    pub fn moved(&self, shift: Point) -> Self {
+        self.mapped(&Placement {
+            along_x: Point::new(1.0, 0.0),
+            along_y: Point::new(0.0, 1.0),
+            origin: shift,
+        })
+    }
+
     /// The drawing with every point and gradient mapped. Widths and dashes of strokes stay.
     fn mapped(&self, map: &Placement) -> Self {
         Self {

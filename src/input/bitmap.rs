@@ -1,11 +1,11 @@
 //! Bitmaps: the sub-pixel outline of what is drawn, and its pixels without their background.
 //!
-//! Bytes of a PNG, JPEG, WebP, GIF or BMP file -> [`Drawing`].
+//! Bytes of a PNG, JPEG, WebP, GIF, BMP or TIFF file -> [`Drawing`].
 //!
 //! 1. Decode under limits; turn upright.
 //! 2. Decide what of it is the figure, and how much of each pixel that covers (module `found`).
-//! 3. Unite covered pixels into parts, take the largest, and follow the iso-line of coverage around it and its holes
-//!    (module `iso_line`). Pixel `(i, j)` has its centre at `(i + 0.5, j + 0.5)`.
+//! 3. Unite covered pixels into parts, and follow the iso-line of coverage around the largest, around the others that are no dirt (module
+//!    `loose`), and around their holes (module `iso_line`). Pixel `(i, j)` has its centre at `(i + 0.5, j + 0.5)`.
 //! 4. Close pin-holes; take the paper out of the pixels along the edge, so that the character does not carry its fringe.
 //!
 //! Cost O(#pixels). Limits: background that shows through a painted figure and what is as white as the paper cannot always be told
@@ -17,11 +17,12 @@ use image::RgbaImage;
 use rayon::prelude::*;
 
 use super::coverage::Coverage;
-use super::decode::{Decoded, decode, image_of_pixels};
+use super::decode::{Decoded, PictureChoice, count_frames, decode_chosen, image_of_pixels, upright_size};
 use super::figure::{FigureKind, FigureRule, PaperRule};
 use super::found::{Found, find};
 use super::iso_line::{Part, Parts};
-use super::{Drawing, InputError, InputNote, Picture};
+use super::loose::{LoosePart, PartOptions, Piece, choose, note_pieces};
+use super::{Canvas, Drawing, InputError, InputNote, Picture};
 use crate::math::Point;
 use crate::outline::{Outline, Ring};
 
@@ -29,10 +30,15 @@ use crate::outline::{Outline, Ring};
 const DIRT_AREA: f64 = 4.0;
 /// Largest share of the drawing's area that a hole or loose part may have to count as dirt.
 const DIRT_SHARE: f64 = 1e-4;
+/// Share of the drawing's area from which on a loose part is no dirt, however few pixels it has: sprites are a few hundred pixels.
+const SPRITE_SHARE: f64 = 1.5e-3;
 /// Smallest area, in pixels, of a drawing.
 const SMALLEST_DRAWING: f64 = 4.0;
 /// How far the threshold may be moved, in steps, when rounding makes the iso-line touch itself.
 const THRESHOLD_STEPS: [f32; 5] = [0.0, 0.004, -0.004, 0.01, -0.01];
+
+/// Clear pixels around the picture of a loose part: as far as colours are looked for at an edge.
+const CROP_MARGIN: usize = 6;
 
 /// The widest gap that is closed, as a fraction of the diagonal: wider, the inside of letters would close.
 const LARGEST_GAP: f64 = 0.2;
@@ -48,7 +54,7 @@ pub enum HoleRule {
 }
 
 /// How a bitmap is read.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct BitmapOptions {
     /// How the figure is told from its sheet. Default: by evidence.
     pub figure: FigureRule,
@@ -60,6 +66,10 @@ pub struct BitmapOptions {
     pub threshold: f64,
     /// What becomes of holes. Default: kept.
     pub holes: HoleRule,
+    /// Which loose parts belong to it. Default: those that are no dirt.
+    pub parts: PartOptions,
+    /// Which picture of the file is meant. Default: the only or first one.
+    pub picture: PictureChoice,
 }
 
 impl Default for BitmapOptions {
@@ -70,6 +80,8 @@ impl Default for BitmapOptions {
             paper: PaperRule::Keep,
             threshold: 0.5,
             holes: HoleRule::Keep,
+            parts: PartOptions::default(),
+            picture: PictureChoice::default(),
         }
     }
 }
@@ -94,7 +106,24 @@ pub fn open_bitmap(path: &Path, options: &BitmapOptions) -> Result<Drawing, Inpu
 /// [`InputError`] if the bytes are no image, the image is too large, or nothing is drawn in it.
 pub fn read_bitmap(bytes: &[u8], options: &BitmapOptions) -> Result<Drawing, InputError> {
     check_options(options)?;
-    outlined(decode(bytes)?, options)
+    outlined(decode_chosen(bytes, options.picture)?, options)
+}
+
+/// How many pictures the bytes of an image file hold: more than one if it is animated, of which at most a hundred are counted.
+///
+/// # Errors
+/// [`InputError`] if the bytes are no image, or it is too large.
+pub fn frame_count(bytes: &[u8]) -> Result<usize, InputError> {
+    count_frames(bytes)
+}
+
+/// How many columns and rows the picture that is meant in the bytes of an image file has, turned upright; only its header is read.
+///
+/// # Errors
+/// [`InputError`] if the bytes are no image, or the image is too large.
+pub fn bitmap_size(bytes: &[u8], choice: PictureChoice) -> Result<Point, InputError> {
+    let [columns, rows] = upright_size(bytes, choice)?;
+    Ok(Point::new(f64::from(columns), f64::from(rows)))
 }
 
 /// The drawing in pixels that are in memory, of `size` columns and rows: row by row, red, green, blue and alpha, colours not
@@ -128,7 +157,7 @@ fn outlined(decoded: Decoded, options: &BitmapOptions) -> Result<Drawing, InputE
     let mut refusal = None;
     for step in THRESHOLD_STEPS {
         let moved = (threshold as f32 + step).clamp(0.005, 0.995);
-        match trace(&image, &found, moved, options.holes, &notes) {
+        match trace(&image, &found, moved, options, &notes) {
             Err(InputError::Outline(error)) => refusal = refusal.or(Some(InputError::Outline(error))),
             settled => return settled,
         }
@@ -140,16 +169,23 @@ fn trace(
     image: &RgbaImage,
     found: &Found,
     threshold: f32,
-    hole_rule: HoleRule,
+    options: &BitmapOptions,
     taken: &[InputNote],
 ) -> Result<Drawing, InputError> {
     let coverage = Coverage::framed(&found.coverage, image.width() as usize, threshold);
     let parts = Parts::of(&coverage, threshold);
-    let largest = largest_part(&parts.parts).ok_or(InputError::NothingDrawn {
-        width: image.width() as usize,
-        height: image.height() as usize,
-        by_alpha: found.kept.is_none(),
-    })?;
+    let pieces: Vec<Piece> = parts.parts.iter().map(Part::piece).collect();
+    // Of a sprite every pixel counts.
+    let loose_dirt = |largest: f64| DIRT_AREA.min(SPRITE_SHARE * largest).max(DIRT_SHARE * largest);
+    let chosen = choose(&pieces, &options.parts, loose_dirt, |place| parts.at(place))?;
+    let Some(chosen) = chosen else {
+        return Err(InputError::NothingDrawn {
+            width: image.width() as usize,
+            height: image.height() as usize,
+            by_alpha: found.kept.is_none(),
+        });
+    };
+    let largest = parts.parts[chosen.largest];
     let too_small = InputError::TooSmall {
         area: largest.area,
         x: largest.centroid.x,
@@ -160,12 +196,67 @@ fn trace(
     }
     let dirt = DIRT_AREA.max(DIRT_SHARE * largest.area);
     let mut notes = taken.to_vec();
-    note_parts(&parts.parts, largest, dirt, &mut notes);
+    note_pieces(&pieces, &chosen, loose_dirt(largest.area), &mut notes);
+    let outline = outline_of(&parts, largest, dirt, options.holes, &mut notes)?.ok_or(too_small)?;
+    let mut loose: Vec<(Part, Outline, bool)> = Vec::new();
+    for &(piece, is_kept) in &chosen.loose {
+        // What bounds nothing, or touches itself by rounding, stays with what the notes say is left out.
+        if let Ok(Some(outline)) = outline_of(&parts, parts.parts[piece], dirt, options.holes, &mut Vec::new()) {
+            loose.push((parts.parts[piece], outline, is_kept));
+        }
+    }
+    let filled: Vec<&Outline> = match options.holes {
+        HoleRule::Keep => Vec::new(),
+        HoleRule::Fill => std::iter::once(&outline)
+            .chain(loose.iter().map(|(_, outline, _)| outline))
+            .collect(),
+    };
+    let picture = without_background(image, found, &filled);
+    let mut in_order: Vec<LoosePart> = loose
+        .into_iter()
+        .map(|(part, outline, is_kept)| LoosePart {
+            picture: Some(picture.cropped(part.bounds, CROP_MARGIN)),
+            outline,
+            art: None,
+            is_kept,
+        })
+        .collect();
+    if !in_order.is_empty() {
+        // Nothing overlaps in a bitmap: what is small is drawn over what is large.
+        in_order.sort_by(|a, b| b.outline.area().total_cmp(&a.outline.area()));
+        in_order.insert(
+            0,
+            LoosePart {
+                outline: outline.clone(),
+                picture: None,
+                art: None,
+                is_kept: false,
+            },
+        );
+    }
+    Ok(Drawing {
+        outline,
+        picture,
+        art: None,
+        notes,
+        unit_px: 1.0,
+        canvas: Canvas::of_pixels(image.width() as usize, image.height() as usize),
+        parts: in_order,
+    })
+}
 
+/// The outline of one part; `None` if it bounds nothing. Its pin-holes are closed and told of.
+fn outline_of(
+    parts: &Parts<'_>,
+    part: Part,
+    dirt: f64,
+    hole_rule: HoleRule,
+    notes: &mut Vec<InputNote>,
+) -> Result<Option<Outline>, InputError> {
     let mut outer = None;
     let mut holes = Vec::new();
     let (mut closed, mut closed_area) = (0, 0.0);
-    for points in parts.loops(largest.label) {
+    for points in parts.loops(part) {
         // A loop without three distinct points or without area bounds nothing.
         let Ok(ring) = Ring::new(points) else { continue };
         let area = ring.signed_area();
@@ -187,50 +278,17 @@ fn trace(
         notes.push(InputNote::HolesFilled { count: holes.len() });
         holes.clear();
     }
-    let outline = Outline::new(outer.ok_or(too_small)?, holes)?;
-    let picture = without_background(image, found, (hole_rule == HoleRule::Fill).then_some(&outline));
-    Ok(Drawing {
-        outline,
-        picture,
-        art: None,
-        notes,
-        unit_px: 1.0,
-    })
+    let Some(outer) = outer else { return Ok(None) };
+    Ok(Some(Outline::new(outer, holes)?))
 }
 
-fn largest_part(parts: &[Part]) -> Option<Part> {
-    parts.iter().copied().reduce(|a, b| if b.area > a.area { b } else { a })
-}
-
-fn note_parts(parts: &[Part], largest: Part, dirt: f64, notes: &mut Vec<InputNote>) {
-    let (specks, loose): (Vec<Part>, Vec<Part>) = parts
-        .iter()
-        .filter(|part| part.label != largest.label)
-        .partition(|part| part.area < dirt);
-    let area = |parts: &[Part]| parts.iter().map(|part| part.area).sum();
-    if let Some(most) = largest_part(&loose) {
-        notes.push(InputNote::PartsLeftOut {
-            count: loose.len(),
-            area: area(&loose),
-            place: most.centroid,
-        });
-    }
-    if !specks.is_empty() {
-        notes.push(InputNote::SpecksLeftOut {
-            count: specks.len(),
-            area: area(&specks),
-        });
-    }
-}
-
-/// The pixels, premultiplied, with the background taken out. Inside `filled`, if given, the background stays, unless the paper of a
-/// line drawing is to be clear.
-fn without_background(image: &RgbaImage, found: &Found, filled: Option<&Outline>) -> Picture {
+/// The pixels, premultiplied, with the background taken out. Inside outlines that are `filled` the background stays, unless the paper
+/// of a line drawing is to be clear.
+fn without_background(image: &RgbaImage, found: &Found, filled: &[&Outline]) -> Picture {
     let (width, height) = (image.width() as usize, image.height() as usize);
     let mut pixels = vec![[0; 4]; width * height];
-    let covered_by_fill = filled
-        .filter(|_| found.kind == FigureKind::Painted)
-        .map(|outline| rows_inside(outline, width, height));
+    let is_filled = found.kind == FigureKind::Painted && !filled.is_empty();
+    let covered_by_fill = is_filled.then(|| rows_inside(filled, width, height));
     pixels
         .par_chunks_mut(width.max(1))
         .zip(image.as_raw().par_chunks(4 * width.max(1)))
@@ -276,10 +334,10 @@ fn without_background(image: &RgbaImage, found: &Found, filled: Option<&Outline>
     }
 }
 
-/// Whether each pixel's centre lies inside the outline.
-fn rows_inside(outline: &Outline, width: usize, height: usize) -> Vec<bool> {
+/// Whether each pixel's centre lies inside one of the outlines, which lie apart.
+fn rows_inside(outlines: &[&Outline], width: usize, height: usize) -> Vec<bool> {
     let mut crossings = vec![Vec::new(); height];
-    for ring in outline.rings() {
+    for ring in outlines.iter().flat_map(|outline| outline.rings()) {
         for (a, b) in ring.edges() {
             let (low, high) = (a.y.min(b.y), a.y.max(b.y));
             let first = (low - 0.5).ceil().max(0.0) as usize;

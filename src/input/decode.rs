@@ -3,7 +3,9 @@
 use std::io::Cursor;
 
 use image::codecs::gif::GifDecoder;
+use image::codecs::png::PngDecoder;
 use image::codecs::webp::WebPDecoder;
+use image::metadata::Orientation;
 use image::{AnimationDecoder, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbaImage};
 
 use super::edges::Fidelity;
@@ -46,8 +48,134 @@ impl Decoded {
     }
 }
 
+/// How many columns and rows the picture that is meant in the bytes of an image file has when it stands upright.
+pub(super) fn upright_size(bytes: &[u8], choice: PictureChoice) -> Result<[u32; 2], InputError> {
+    let (mut decoder, _) = decoder_of(bytes)?;
+    let (width, height) = decoder.dimensions();
+    let is_turned = matches!(
+        decoder.orientation().map_err(refused)?,
+        Orientation::Rotate90 | Orientation::Rotate270 | Orientation::Rotate90FlipH | Orientation::Rotate270FlipH
+    );
+    let size = if is_turned { [height, width] } else { [width, height] };
+    let PictureChoice::Cell { at, of } = choice else {
+        return Ok(size);
+    };
+    let [_, _, width, height] = cell_of(size, at, of)?;
+    Ok([width, height])
+}
+
+/// Which picture of a file is meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PictureChoice {
+    /// The only one, or of an animated file the first.
+    #[default]
+    Only,
+    /// A frame of an animated file, counted from 0.
+    Frame(usize),
+    /// A cell of a sheet that is divided evenly.
+    Cell {
+        /// Its column and row, counted from 0.
+        at: [usize; 2],
+        /// How many columns and rows there are.
+        of: [usize; 2],
+    },
+}
+
+/// The picture that is meant in the bytes of an image file.
+pub(super) fn decode_chosen(bytes: &[u8], choice: PictureChoice) -> Result<Decoded, InputError> {
+    match choice {
+        PictureChoice::Only => decode(bytes),
+        PictureChoice::Frame(frame) => frame_of(bytes, frame),
+        PictureChoice::Cell { at, of } => {
+            let sheet = decode(bytes)?;
+            let [left, top, width, height] = cell_of([sheet.image.width(), sheet.image.height()], at, of)?;
+            Ok(Decoded {
+                image: image::imageops::crop_imm(&sheet.image, left, top, width, height).to_image(),
+                later_frames: 0,
+                ..sheet
+            })
+        }
+    }
+}
+
+/// Left, top, width and height of a cell of a sheet of `size`.
+fn cell_of(size: [u32; 2], at: [usize; 2], of: [usize; 2]) -> Result<[u32; 4], InputError> {
+    let refusal = || InputError::NoSuchCell { at, of, size };
+    let edge = |axis: usize, k: usize| -> Option<u32> {
+        let place = u64::from(size[axis]) * u64::try_from(k).ok()? / u64::try_from(of[axis]).ok()?;
+        u32::try_from(place).ok()
+    };
+    let side = |axis: usize| -> Option<(u32, u32)> {
+        if at[axis] >= of[axis] {
+            return None;
+        }
+        let (low, high) = (edge(axis, at[axis])?, edge(axis, at[axis] + 1)?);
+        (high > low).then_some((low, high - low))
+    };
+    let (Some((left, width)), Some((top, height))) = (side(0), side(1)) else {
+        return Err(refusal());
+    };
+    Ok([left, top, width, height])
+}
+
+/// How many pictures the bytes of an image file hold, as far as they are whole: one of anything that is not animated.
+pub(super) fn count_frames(bytes: &[u8]) -> Result<usize, InputError> {
+    let (_, format) = decoder_of(bytes)?;
+    Ok(1 + later_frames(bytes, format))
+}
+
+/// A frame of an animated file, as it is seen: composed with those before it.
+fn frame_of(bytes: &[u8], frame: usize) -> Result<Decoded, InputError> {
+    let (_, format) = decoder_of(bytes)?;
+    let refusal = || InputError::NoSuchFrame {
+        frame,
+        count: 1 + later_frames(bytes, format),
+    };
+    let frames = match format {
+        ImageFormat::Gif => GifDecoder::new(Cursor::new(bytes)).map_err(refused)?.into_frames(),
+        ImageFormat::WebP => {
+            let decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(refused)?;
+            if !decoder.has_animation() {
+                return if frame == 0 { decode(bytes) } else { Err(refusal()) };
+            }
+            decoder.into_frames()
+        }
+        ImageFormat::Png => {
+            let decoder = PngDecoder::new(Cursor::new(bytes)).map_err(refused)?;
+            if !decoder.is_apng().map_err(refused)? {
+                return if frame == 0 { decode(bytes) } else { Err(refusal()) };
+            }
+            decoder.apng().map_err(refused)?.into_frames()
+        }
+        _ => return if frame == 0 { decode(bytes) } else { Err(refusal()) },
+    };
+    let found = frames
+        .take(MOST_COUNTED + 1)
+        .nth(frame)
+        .ok_or_else(refusal)?
+        .map_err(refused)?;
+    Ok(Decoded {
+        image: found.into_buffer(),
+        fidelity: fidelity(bytes, format),
+        later_frames: 0,
+    })
+}
+
 /// The first picture in the bytes of an image file.
 pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, InputError> {
+    let (mut decoder, format) = decoder_of(bytes)?;
+    let orientation = decoder.orientation().map_err(refused)?;
+    let mut image = DynamicImage::from_decoder(decoder).map_err(refused)?;
+    image.apply_orientation(orientation);
+    Ok(Decoded {
+        image: image.into_rgba8(),
+        fidelity: fidelity(bytes, format),
+        later_frames: later_frames(bytes, format),
+    })
+}
+
+/// What decodes the bytes of an image file, whose header promises a picture that is not too large.
+fn decoder_of(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, ImageFormat), InputError> {
     if bytes.is_empty() {
         return Err(InputError::EmptyFile);
     }
@@ -64,17 +192,10 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, InputError> {
     // Colours may be stored as four 16-bit channels, and a decoder keeps a copy while it works.
     limits.max_alloc = Some(LARGEST_COUNT * 16);
     reader.limits(limits);
-    let mut decoder = reader.into_decoder().map_err(refused)?;
+    let decoder = reader.into_decoder().map_err(refused)?;
     let (width, height) = decoder.dimensions();
     check_size(width, height)?;
-    let orientation = decoder.orientation().map_err(refused)?;
-    let mut image = DynamicImage::from_decoder(decoder).map_err(refused)?;
-    image.apply_orientation(orientation);
-    Ok(Decoded {
-        image: image.into_rgba8(),
-        fidelity: fidelity(bytes, format),
-        later_frames: later_frames(bytes, format),
-    })
+    Ok((decoder, format))
 }
 
 /// An image of `size` columns and rows from straight pixels in memory.

@@ -1,6 +1,6 @@
 //! What the input stage hands on: one pose's outline with its pixels.
 
-use super::{Art, Picture};
+use super::{Art, Canvas, LoosePart, Picture};
 use crate::math::Point;
 use crate::outline::Outline;
 
@@ -17,6 +17,11 @@ pub struct Drawing {
     pub notes: Vec<InputNote>,
     /// How many pixels of the page a source unit is: 1 for a bitmap, 3.78 for an SVG file in millimetres.
     pub unit_px: f64,
+    /// The page that it is on.
+    pub canvas: Canvas,
+    /// All its pieces, the largest one, which is the drawing's outline, among them, in the order in which they are drawn; empty if there is
+    /// only one.
+    pub parts: Vec<LoosePart>,
 }
 
 /// Something in a drawing that its outline does not show.
@@ -152,8 +157,8 @@ impl std::fmt::Display for InputNote {
             ),
             Self::FramesLeftOut { count } => write!(
                 f,
-                "the file is animated: only its first frame is used, {count} other frames or more are left out; save each frame as a \
-                 file of its own"
+                "the file is animated: only its first frame is used, {count} other frames or more are left out; `frame = 1` in a pose \
+                 takes the second, and `inbetween new` makes a pose of each"
             ),
             Self::PartsLeftOut { count: 1, area, place } => write!(
                 f,

@@ -26,11 +26,43 @@ pub enum InputError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// A place that is to name a piece of the drawing is far from all of them.
+    #[error("`keep` and `drop`: there is nothing drawn near ({x:.1}, {y:.1}); give a place on the part that is meant")]
+    NoPartThere {
+        /// Its place.
+        x: f64,
+        /// Its place.
+        y: f64,
+    },
+    /// The file has fewer pictures.
+    #[error("there is no frame {frame}: the file has {count}, counted from 0; give one of them with `frame`")]
+    NoSuchFrame {
+        /// Which was asked for, from 0.
+        frame: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// The sheet has fewer cells.
+    #[error(
+        "there is no cell [{}, {}] in a sheet of {} x {} cells and {} x {} pixels; cells are counted from [0, 0]",
+        at[0], at[1], of[0], of[1], size[0], size[1]
+    )]
+    NoSuchCell {
+        /// Column and row.
+        at: [usize; 2],
+        /// How many columns and rows.
+        of: [usize; 2],
+        /// The sheet's columns and rows of pixels.
+        size: [u32; 2],
+    },
+    /// No piece of the drawing is left.
+    #[error("`drop` leaves nothing of the drawing; drop fewer parts")]
+    AllDropped,
     /// The file has no bytes.
     #[error("the file is empty; export the drawing again")]
     EmptyFile,
     /// No known image format starts like this.
-    #[error("this is not a PNG, JPEG, WebP, GIF or BMP image; export the drawing as PNG")]
+    #[error("this is not a PNG, JPEG, WebP, GIF, BMP or TIFF image; export the drawing as PNG")]
     NotAnImage,
     /// The image is damaged or of an unsupported kind.
     #[error("the image cannot be decoded ({reason}); export the drawing again as PNG")]

@@ -10,6 +10,7 @@
 //! Cost O(#pixels).
 
 use super::coverage::Coverage;
+use super::loose::Piece;
 use crate::math::Point;
 
 /// The corners of a cell in positive order, relative to its first one.
@@ -24,7 +25,21 @@ pub(super) struct Part {
     pub(super) area: f64,
     /// Its centroid, in image coordinates.
     pub(super) centroid: Point,
+    /// Its first and last column and row, in image coordinates: `[[left, top], [right, bottom]]`.
+    pub(super) bounds: [[usize; 2]; 2],
 }
+
+impl Part {
+    pub(super) fn piece(&self) -> Piece {
+        Piece {
+            area: self.area,
+            centroid: self.centroid,
+        }
+    }
+}
+
+/// How far from a part a place that names it may be, as a fraction of the picture's diagonal: a click beside a speck.
+const CLICK: f64 = 0.02;
 
 /// The parts of a field and the field's threshold.
 #[derive(Debug)]
@@ -54,12 +69,19 @@ impl<'a> Parts<'a> {
             }
             let label = field.parts.len() as u32 + 1;
             let (mut area, mut moment) = (0.0, Point::zeros());
+            let mut bounds = [[usize::MAX; 2], [0; 2]];
             labels[seed] = label;
             open.push(seed);
             while let Some(pixel) = open.pop() {
                 let value = f64::from(coverage.values[pixel]).min(1.0);
                 area += value;
                 moment += field.centre(pixel) * value;
+                // Inside pixels never lie in the frame.
+                let place = [pixel % coverage.width - 1, pixel / coverage.width - 1];
+                for axis in 0..2 {
+                    bounds[0][axis] = bounds[0][axis].min(place[axis]);
+                    bounds[1][axis] = bounds[1][axis].max(place[axis]);
+                }
                 field.for_each_joined(pixel, |other| {
                     if labels[other] == 0 {
                         labels[other] = label;
@@ -71,18 +93,45 @@ impl<'a> Parts<'a> {
                 label,
                 area,
                 centroid: moment / area,
+                bounds,
             });
         }
         field.labels = labels;
         field
     }
 
-    /// The closed loops around the part `label`: one of positive area, and one of negative area for each hole.
-    pub(super) fn loops(&self, label: u32) -> Vec<Vec<Point>> {
-        let mut visited = vec![false; self.labels.len()];
+    /// The part that a place in image coordinates means: that of its pixel, or the nearest not far away.
+    pub(super) fn at(&self, place: Point) -> Option<usize> {
+        let (width, height) = (self.coverage.width, self.coverage.height);
+        let reach = (CLICK * (width as f64).hypot(height as f64)).max(2.0);
+        // Casts saturate.
+        let range = |middle: f64, end: usize| {
+            let first = (middle - reach).max(0.0) as usize;
+            first..((middle + reach + 2.0).max(0.0) as usize).min(end)
+        };
+        let pixels =
+            range(place.y, height).flat_map(|row| range(place.x, width).map(move |column| row * width + column));
+        let distances = pixels
+            .filter(|pixel| self.labels[*pixel] != 0)
+            .map(|pixel| (pixel, (self.centre(pixel) - place).norm()));
+        let nearest = distances.min_by(|a, b| a.1.total_cmp(&b.1));
+        nearest
+            .filter(|(_, distance)| *distance <= reach)
+            .map(|(pixel, _)| self.labels[pixel] as usize - 1)
+    }
+
+    /// The closed loops around a part: one of positive area, and one of negative area for each hole.
+    pub(super) fn loops(&self, part: Part) -> Vec<Vec<Point>> {
+        let label = part.label;
+        let [[left, top], [right, bottom]] = part.bounds;
+        let (columns, width) = (right - left + 1, self.coverage.width);
+        // Of the pixels in its box, row by row.
+        let mut visited = vec![false; columns * (bottom - top + 1)];
+        let place = |pixel: usize| (pixel / width - 1 - top) * columns + pixel % width - 1 - left;
         let mut loops = Vec::new();
-        for pixel in 1..self.labels.len() {
-            if self.labels[pixel] == label && !self.inside(pixel - 1) && !visited[pixel] {
+        let rows = (top + 1)..(bottom + 2);
+        for pixel in rows.flat_map(|row| (row * width + left + 1)..(row * width + right + 2)) {
+            if self.labels[pixel] == label && !self.inside(pixel - 1) && !visited[place(pixel)] {
                 // With the inside to its right on the page, the line runs up: out of the cell by the top side.
                 let start = (pixel - 1, 0);
                 let mut points = Vec::new();
@@ -90,7 +139,7 @@ impl<'a> Parts<'a> {
                 loop {
                     let (cell, side) = at;
                     if side == 0 {
-                        visited[cell + 1] = true;
+                        visited[place(cell + 1)] = true;
                     }
                     points.push(self.crossing(cell, side));
                     at = self.next(cell, side);

@@ -4,7 +4,9 @@
 //! parts, specks, pin-holes) is told in its [`InputNote`]s; what cannot be used is an [`InputError`].
 
 mod art;
+mod art_parts;
 mod bitmap;
+mod canvas;
 mod coverage;
 mod decode;
 mod drawing;
@@ -17,6 +19,7 @@ mod gaps;
 mod interior;
 mod iso_line;
 mod lines;
+mod loose;
 mod obj;
 mod paper;
 mod path;
@@ -28,13 +31,16 @@ mod svg_silhouette;
 mod svg_text;
 
 pub use art::{Art, ArtElement};
-pub use bitmap::{BitmapOptions, HoleRule, open_bitmap, read_bitmap, read_pixels};
+pub use bitmap::{BitmapOptions, HoleRule, bitmap_size, frame_count, open_bitmap, read_bitmap, read_pixels};
+pub use canvas::Canvas;
+pub use decode::PictureChoice;
 pub use drawing::{Drawing, InputNote};
 pub use error::InputError;
 pub use figure::{FigureKind, FigureRule, PaperRule};
+pub use loose::{LoosePart, PartOptions, PartRule};
 pub use obj::{ObjError, ObjForm, ObjProblem, open_obj, read_obj};
 pub use path::{
     Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke, Subpath,
 };
 pub use picture::{Picture, read_picture};
-pub use svg::{Extent, SvgOptions, open_svg, read_svg};
+pub use svg::{Extent, SvgOptions, open_svg, read_svg, svg_page_px};

@@ -22,6 +22,23 @@ pub struct Picture {
     pub pixels_per_unit: f64,
 }
 
+impl Picture {
+    /// The pixels between a first column and row and last ones, and `margin` more on every side, as far as there are any.
+    pub(super) fn cropped(&self, [[left, top], [right, bottom]]: [[usize; 2]; 2], margin: usize) -> Self {
+        let (left, top) = (left.saturating_sub(margin), top.saturating_sub(margin));
+        let right = right.saturating_add(margin + 1).min(self.width);
+        let bottom = bottom.saturating_add(margin + 1).min(self.height);
+        let rows = self.pixels.chunks_exact(self.width.max(1)).take(bottom).skip(top);
+        Self {
+            width: right.saturating_sub(left),
+            height: bottom.saturating_sub(top),
+            pixels: rows.flat_map(|row| row[left..right].iter().copied()).collect(),
+            origin: self.origin + Point::new(left as f64, top as f64) / self.pixels_per_unit,
+            pixels_per_unit: self.pixels_per_unit,
+        }
+    }
+}
+
 impl std::fmt::Debug for Picture {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Picture")

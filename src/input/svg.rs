@@ -21,10 +21,11 @@ use kurbo::Affine;
 use resvg::tiny_skia::{Pixmap, Transform};
 use usvg::roxmltree;
 
+use super::art_parts::DividedArt;
 use super::svg_art::read_art;
 use super::svg_numbers::check_numbers;
-use super::svg_silhouette::{affine, silhouette};
-use super::{Drawing, HoleRule, InputError, InputNote, Picture, svg_text};
+use super::svg_silhouette::{Pieces, affine, silhouette};
+use super::{Art, Canvas, Drawing, HoleRule, InputError, InputNote, LoosePart, PartOptions, Picture, svg_text};
 use crate::math::{Point, point};
 use crate::outline::Outline;
 
@@ -61,6 +62,10 @@ pub struct SvgOptions {
     pub pixels_per_unit: Option<f64>,
     /// What becomes of holes. Default: kept.
     pub holes: HoleRule,
+    /// Which loose parts belong to it. Default: those that are no dirt.
+    pub parts: PartOptions,
+    /// The corners, in user units, of what the picture is to show. Default: the box of the outline.
+    pub around: Option<[Point; 2]>,
 }
 
 /// What of an SVG file belongs to a drawing of which an element is named.
@@ -118,6 +123,17 @@ pub fn read_svg(bytes: &[u8], options: &SvgOptions) -> Result<Drawing, InputErro
         drawing.notes.push(InputNote::VariablesUnknown { names: missing });
     }
     Ok(drawing)
+}
+
+/// How large the page of the SVG file in `bytes` is, in pixels: width and height as a browser shows it.
+///
+/// # Errors
+/// [`InputError`] if the bytes are no SVG.
+pub fn svg_page_px(bytes: &[u8]) -> Result<Point, InputError> {
+    let text = svg_text::decode(bytes).map_err(|reason| not_svg(&reason))?;
+    let (text, _) = svg_text::with_variables(text);
+    let size = Source::new(&text)?.tree.size();
+    Ok(Point::new(f64::from(size.width()), f64::from(size.height())))
 }
 
 /// A drawing with the page that it is on.
@@ -213,22 +229,38 @@ impl<'a> Source<'a> {
             Some(id) => vec![find(tree.root(), id).ok_or_else(|| missing(id, document))?],
             None => tree.root().children().iter().collect(),
         };
-        let (outline, mut notes) = silhouette(&nodes, to_user, options.holes).map_err(|error| match error {
+        let pieces = silhouette(&nodes, to_user, options.holes, &options.parts).map_err(|error| match error {
             InputError::NoClosedShape => nothing_but(document).unwrap_or(InputError::NoClosedShape),
             other => other,
         })?;
+        let outline = pieces
+            .outline(pieces.chosen.largest)
+            .ok_or(InputError::NoClosedShape)?
+            .clone();
+        let mut notes = pieces.notes.clone();
         note_undrawn(document, &mut notes);
         // The element says whose outline is meant; the drawing is everything in the file, unless it is one layer of it.
         let drawn: Vec<&usvg::Node> = match options.extent {
             Extent::Everything => tree.root().children().iter().collect(),
             Extent::Element => nodes,
         };
-        let picture = rasterise(&drawn, to_user, &outline, options.pixels_per_unit)?;
+        let bounds = match options.around {
+            Some(bounds) => Some((bounds[0], bounds[1])),
+            None => point::bounding_box(outline.outer().points()),
+        };
+        let picture = rasterise(&drawn, to_user, bounds, options.pixels_per_unit)?;
         let art = read_art(&drawn, to_user, &mut notes)
             .map_err(|reason| notes.push(InputNote::NotCurves { reason }))
             .ok();
+        let pixels_per_unit = picture.pixels_per_unit;
+        let picture_of = |outline: &Outline| {
+            let bounds = point::bounding_box(outline.outer().points());
+            rasterise(&drawn, to_user, bounds, Some(pixels_per_unit))
+        };
+        let (art, parts) = divided(&pieces, art, picture_of, &mut notes)?;
         let size = tree.size();
         let page = kurbo::Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height()));
+        let page = to_user.transform_rect_bbox(page);
         let [a, b, c, d, ..] = to_user.as_coeffs();
         Ok(OnPage {
             drawing: Drawing {
@@ -237,8 +269,10 @@ impl<'a> Source<'a> {
                 art,
                 notes,
                 unit_px: (a * d - b * c).abs().sqrt().recip(),
+                canvas: Canvas::of_page(page),
+                parts,
             },
-            page: to_user.transform_rect_bbox(page),
+            page,
         })
     }
 }
@@ -354,14 +388,67 @@ fn user_units(document: &roxmltree::Document, tree: &usvg::Tree) -> Affine {
     Affine::new([scale_x, 0.0, 0.0, scale_y, left - x * scale_x, top - y * scale_y]).inverse()
 }
 
-/// The pixels of `nodes` around `outline`.
+/// The drawing's curves without what is dropped of it, and its pieces with their curves and pixels, if there are several.
+fn divided(
+    pieces: &Pieces,
+    art: Option<Art>,
+    picture_of: impl Fn(&Outline) -> Result<Picture, InputError>,
+    notes: &mut Vec<InputNote>,
+) -> Result<(Option<Art>, Vec<LoosePart>), InputError> {
+    let chosen = &pieces.chosen;
+    if chosen.loose.is_empty() && chosen.dropped.is_empty() {
+        return Ok((art, Vec::new()));
+    }
+    let outlines: Vec<Outline> = pieces.outlines.iter().map(|(_, outline)| outline.clone()).collect();
+    let divided = match art.as_ref().map(|art| DividedArt::new(art, &outlines)) {
+        Some(Ok(divided)) => Some(divided),
+        Some(Err(reason)) => {
+            notes.push(InputNote::NotCurves { reason });
+            None
+        }
+        None => None,
+    };
+    let is_left = |place: usize| !chosen.dropped.contains(&pieces.outlines[place].0);
+    let whole = divided.as_ref().map(|divided| divided.only(is_left));
+    let wanted = |piece: usize| match piece == chosen.largest {
+        true => Some(false),
+        false => chosen
+            .loose
+            .iter()
+            .find(|(own, _)| *own == piece)
+            .map(|(_, is_kept)| *is_kept),
+    };
+    let mut parts: Vec<(usize, LoosePart)> = Vec::new();
+    for (place, (piece, outline)) in pieces.outlines.iter().enumerate() {
+        let Some(is_kept) = wanted(*piece).filter(|_| !chosen.loose.is_empty()) else {
+            continue;
+        };
+        let order = divided.as_ref().map_or(0, |divided| divided.first_of(place));
+        let picture = match *piece == chosen.largest {
+            true => None,
+            false => Some(picture_of(outline)?),
+        };
+        let part = LoosePart {
+            outline: outline.clone(),
+            picture,
+            art: divided.as_ref().map(|divided| divided.only(|own| own == place)),
+            is_kept,
+        };
+        parts.push((order, part));
+    }
+    // In the order in which they are painted; where that is not known, what is small over what is large.
+    parts.sort_by(|(a, part), (b, other)| a.cmp(b).then(other.outline.area().total_cmp(&part.outline.area())));
+    Ok((whole, parts.into_iter().map(|(_, part)| part).collect()))
+}
+
+/// The pixels of `nodes` between two corners.
 fn rasterise(
     nodes: &[&usvg::Node],
     to_user: Affine,
-    outline: &Outline,
+    bounds: Option<(Point, Point)>,
     asked: Option<f64>,
 ) -> Result<Picture, InputError> {
-    let (low, high) = point::bounding_box(outline.outer().points()).ok_or(InputError::NoClosedShape)?;
+    let (low, high) = bounds.ok_or(InputError::NoClosedShape)?;
     let longer = (high - low).max();
     let finest = (LARGEST_SIDE - 2.0 * MARGIN_PX - 1.0) / longer;
     let pixels_per_unit = asked.unwrap_or(USUAL_SIDE / longer).min(finest);

@@ -5,7 +5,7 @@
 //! 2. All regions are united (i_overlay, on an integer grid of 2^-60 of the drawing, where decisions are exact).
 //! 3. Where the boundary meets itself in a point (a figure of eight, a hole that reaches the edge), a patch joins the two
 //!    sides, since an outline must not touch itself. Its half width is [`PATCH`].
-//! 4. The largest part is the outline.
+//! 4. The largest part is the outline; module `loose` says what becomes of the others.
 //!
 //! Masks cut where they let through less than half; within a mask, what clips and masks groups of its own is taken as it is. Filters do
 //! not change the outline. Opacity does only where it is 0.
@@ -15,9 +15,10 @@ use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::overlay::FloatOverlay;
 use kurbo::{Affine, BezPath, PathEl};
 
-use super::{HoleRule, InputError, InputNote};
+use super::loose::{Chosen, Piece, choose, note_pieces};
+use super::{HoleRule, InputError, InputNote, PartOptions};
 use crate::math::Point;
-use crate::outline::{Outline, Ring, RingError, simplicity};
+use crate::outline::{ArcLength, Outline, Ring, RingError, simplicity};
 
 /// How far a flattened curve may be from the curve, as a fraction of the drawing's diagonal.
 const FLATNESS: f64 = 1e-4;
@@ -32,18 +33,22 @@ const MOST_PATCHES: usize = 64;
 /// Holes and loose parts with less than this share of the outline's area are dirt.
 const DIRT_SHARE: f64 = 1e-4;
 
+/// How far from a part a place that names it may be, as a fraction of the drawing's diagonal.
+const CLICK: f64 = 0.02;
+
 /// The most dashes that a stroke is cut into; beyond, it counts as a full line.
 const MOST_DASHES: f64 = 10_000.0;
 
 /// Closed polygons, the inside to the left of each in the sense of positive area.
 type Region = Vec<Vec<[f64; 2]>>;
 
-/// The outline of everything drawn in `nodes`, in user units, and what it leaves out.
+/// The pieces of everything drawn in `nodes`, in user units.
 pub(super) fn silhouette(
     nodes: &[&usvg::Node],
     to_user: Affine,
     hole_rule: HoleRule,
-) -> Result<(Outline, Vec<InputNote>), InputError> {
+    options: &PartOptions,
+) -> Result<Pieces, InputError> {
     let mut bounds: Option<kurbo::Rect> = None;
     for node in nodes {
         let bbox = node.abs_stroke_bounding_box();
@@ -85,7 +90,7 @@ pub(super) fn silhouette(
         ]);
         parts = unite(&patched, FillRule::NonZero);
     }
-    largest_outline(&parts, hole_rule)
+    pieces(&parts, hole_rule, options)
 }
 
 fn ring(polygon: &[[f64; 2]]) -> Result<Ring, RingError> {
@@ -114,43 +119,86 @@ fn area_and_centroid(polygon: &[[f64; 2]]) -> (f64, Point) {
     (area, centroid)
 }
 
-fn largest_outline(parts: &[Region], hole_rule: HoleRule) -> Result<(Outline, Vec<InputNote>), InputError> {
-    let measured: Vec<(f64, Point)> = parts
+/// The pieces of what is drawn.
+#[derive(Debug)]
+pub(super) struct Pieces {
+    /// The outline of every piece that has one, and which piece of `chosen` it is.
+    pub(super) outlines: Vec<(usize, Outline)>,
+    pub(super) chosen: Chosen,
+    pub(super) notes: Vec<InputNote>,
+}
+
+impl Pieces {
+    /// The outline of a piece.
+    pub(super) fn outline(&self, piece: usize) -> Option<&Outline> {
+        let found = self.outlines.iter().find(|(own, _)| *own == piece);
+        found.map(|(_, outline)| outline)
+    }
+}
+
+fn pieces(parts: &[Region], hole_rule: HoleRule, options: &PartOptions) -> Result<Pieces, InputError> {
+    let measured: Vec<Piece> = parts
         .iter()
         .map(|part| {
             let (outer, centroid) = part.first().map_or((0.0, Point::zeros()), |p| area_and_centroid(p));
             let holes: f64 = part.iter().skip(1).map(|hole| area_and_centroid(hole).0.abs()).sum();
-            (outer.abs() - holes, centroid)
+            Piece {
+                area: outer.abs() - holes,
+                centroid,
+            }
         })
         .collect();
-    let largest = (0..parts.len())
-        .max_by(|&a, &b| measured[a].0.total_cmp(&measured[b].0).then(b.cmp(&a)))
-        .ok_or(InputError::NoClosedShape)?;
-    let dirt = DIRT_SHARE * measured[largest].0;
+    let at = |place| named_piece(parts, place);
+    let chosen = choose(&measured, options, |largest| DIRT_SHARE * largest, at)?.ok_or(InputError::NoClosedShape)?;
+    let dirt = DIRT_SHARE * measured[chosen.largest].area;
     let mut notes = Vec::new();
-    let (mut specks, mut speck_area) = (0, 0.0);
-    let mut loose: Vec<(f64, Point)> = Vec::new();
-    for (_, &(area, place)) in measured.iter().enumerate().filter(|(k, _)| *k != largest) {
-        if area < dirt {
-            (specks, speck_area) = (specks + 1, speck_area + area);
+    note_pieces(&measured, &chosen, dirt, &mut notes);
+    let mut outlines = vec![(
+        chosen.largest,
+        outline_of(&parts[chosen.largest], dirt, hole_rule, &mut notes)?,
+    )];
+    // Specks and what is dropped only say whose curves are whose.
+    let others = (0..parts.len()).filter(|piece| *piece != chosen.largest);
+    outlines.extend(others.filter_map(|piece| {
+        let outline = outline_of(&parts[piece], dirt, hole_rule, &mut Vec::new());
+        Some((piece, outline.ok()?))
+    }));
+    Ok(Pieces {
+        outlines,
+        chosen,
+        notes,
+    })
+}
+
+/// The piece that a place means: the one around it, or the nearest not far away.
+fn named_piece(parts: &[Region], place: Point) -> Option<usize> {
+    let rings: Vec<Vec<Ring>> = (parts.iter())
+        .map(|part| part.iter().filter_map(|polygon| ring(polygon).ok()).collect())
+        .collect();
+    let all = rings.iter().flatten().flat_map(Ring::points);
+    let reach = CLICK * crate::math::point::diagonal(all);
+    let distance = |rings: &Vec<Ring>| {
+        let is_inside = rings.iter().fold(false, |inside, ring| inside != ring.contains(place));
+        let nearest = rings.iter().map(|ring| ArcLength::new(ring).nearest(place).1);
+        if is_inside {
+            0.0
         } else {
-            loose.push((area, place));
+            nearest.fold(f64::INFINITY, f64::min)
         }
-    }
-    if let Some(&(_, place)) = loose.iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
-        notes.push(InputNote::PartsLeftOut {
-            count: loose.len(),
-            area: loose.iter().map(|(area, _)| area).sum(),
-            place,
-        });
-    }
-    if specks > 0 {
-        notes.push(InputNote::SpecksLeftOut {
-            count: specks,
-            area: speck_area,
-        });
-    }
-    let mut rings = parts[largest].iter().map(|polygon| {
+    };
+    let distances = rings.iter().map(distance).enumerate();
+    let nearest = distances.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (nearest.1 <= reach).then_some(nearest.0)
+}
+
+/// The outline of one part; its pin-holes are closed and told of.
+fn outline_of(
+    part: &Region,
+    dirt: f64,
+    hole_rule: HoleRule,
+    notes: &mut Vec<InputNote>,
+) -> Result<Outline, InputError> {
+    let mut rings = part.iter().map(|polygon| {
         let area = area_and_centroid(polygon).0.abs();
         ring(polygon).map(|ring| (ring, area))
     });
@@ -179,7 +227,7 @@ fn largest_outline(parts: &[Region], hole_rule: HoleRule) -> Result<(Outline, Ve
         notes.push(InputNote::HolesFilled { count: holes.len() });
         holes.clear();
     }
-    Ok((Outline::new(outer, holes)?, notes))
+    Ok(Outline::new(outer, holes)?)
 }
 
 fn add_node(node: &usvg::Node, to_user: Affine, tolerance: f64, drawn: &mut Region) -> Result<(), InputError> {

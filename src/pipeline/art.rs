@@ -9,7 +9,7 @@ use super::spec::{ArtChoice, TextureSpec};
 use crate::input::Drawing;
 use crate::render::drawing::{CarriedDrawing, PoseArt, VectorNode, VectorPicture};
 use crate::render::puppet::{PuppetLayer, PuppetTexture};
-use crate::render::{Camera, PaintOptions, Painter, PoseTexture, Texture};
+use crate::render::{Camera, PaintOptions, Painter, PoseTexture, Sampling, Texture};
 
 /// The drawings of a layer, ready to be drawn on its mesh.
 #[derive(Debug)]
@@ -54,14 +54,19 @@ impl LayerArt {
             None => {
                 let scale = camera.scale() * samples as f64;
                 sharpen(part.layer, &mut drawings, scale).map_err(|error| part.refusal(error))?;
+                let sampling = texture.sampling;
                 let texture = |(drawing, &drawn_on): (&Arc<Drawing>, &usize)| PoseTexture {
-                    texture: Texture::new(&drawing.picture, &drawing.outline, scale),
+                    texture: match sampling {
+                        Sampling::Smooth => Texture::new(&drawing.picture, &drawing.outline, scale),
+                        Sampling::Nearest => Texture::for_nearest(&drawing.picture, &drawing.outline),
+                    },
                     drawn_on,
                 };
                 let textures = drawings.iter().zip(&drawn_on).map(texture).collect();
                 let options = PaintOptions {
                     blending,
                     supersample: samples,
+                    sampling,
                 };
                 let painter = Painter::new(mapping, textures, drawing_of.clone(), silhouette, camera, options);
                 Style::Pixels(Box::new(painter))

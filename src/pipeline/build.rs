@@ -20,13 +20,14 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::boundaries::Boundaries;
+use super::canvas;
 use super::drawings::used_drawings;
 use super::figure::{self, Figure, Posed};
 use super::layer::{self, LayerShape, Part, PosedLayer};
 use super::layout::placed;
 use super::mapping::map_drawings_again;
 use super::spec::{
-    ArtChoice, CharacterSpec, DrawnPose, LandmarkSpec, LayerSpec, MeshOptions, PathSpec, Places, PoseSpec,
+    ArtChoice, CameraRule, CharacterSpec, DrawnPose, LandmarkSpec, LayerSpec, MeshOptions, PathSpec, Places, PoseSpec,
     WeightOptions,
 };
 use super::{Character, EditableWeights, MappingReport, PipelineError, checked_weights, editable_weights, landmarks};
@@ -139,7 +140,7 @@ impl Build {
             built(part, was)
         };
         let made: Vec<Result<_, PipelineError>> = parts.par_iter().enumerate().map(step).collect();
-        let (mut layers, mut shapes, mut notes) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut layers, mut shapes, mut notes) = (Vec::new(), Vec::new(), spec.notes.clone());
         for made in made {
             let (layer, shape, said) = made?;
             layers.push(layer);
@@ -196,11 +197,17 @@ impl Build {
         &self.layers[layer].report
     }
 
-    /// A place of a drawing in the drawing as it is used, which may be reflected, and the other way round: of drawing `drawing`
-    /// of a layer, counted like [`Self::drawings`].
+    /// A place of a drawing in the drawing as it is used, which may be reflected and moved: of drawing `drawing` of a layer, counted
+    /// like [`Self::drawings`].
     #[must_use]
     pub fn as_used(&self, layer: usize, drawing: usize, place: Point) -> Point {
-        landmarks::as_used(&self.spec.layers[layer], self.drawings(layer), drawing, place)
+        landmarks::as_used(&self.spec.layers[layer], drawing, place)
+    }
+
+    /// The place of a drawing that [`Self::as_used`] takes to `place`.
+    #[must_use]
+    pub fn as_drawn(&self, layer: usize, drawing: usize, place: Point) -> Point {
+        landmarks::as_drawn(&self.spec.layers[layer], drawing, place)
     }
 
     /// What the artist should know, one line a remark.
@@ -238,7 +245,10 @@ impl Build {
     /// Whether both have the same shapes, drawn with the same art; their weights may differ.
     #[must_use]
     pub fn draws_like(&self, other: &Self) -> bool {
-        let art = |build: &Self| (build.spec.texture.art, build.spec.texture.blending);
+        let art = |build: &Self| {
+            let texture = &build.spec.texture;
+            (texture.art, texture.blending, texture.sampling)
+        };
         self.has_figure_of(other) && self.has_pictures_of(other) && art(self) == art(other)
     }
 
@@ -266,13 +276,19 @@ impl Build {
             .at(&posed.positions, &posed.weights)
     }
 
-    /// A camera for frames of `size` (columns, rows) that shows all poses and the whole animation. Looking at the animation takes
-    /// as long as dozens of frames.
+    /// A camera for frames of `size` (columns, rows) that shows what the specification's [`CameraRule`] says: all poses and the whole
+    /// animation, or the drawings' canvas. Looking at the animation takes as long as dozens of frames.
     ///
     /// # Errors
     /// [`PipelineError`] if the animation is none in this pose space.
     pub fn camera(&self, animation: &Animation, size: [usize; 2]) -> Result<Camera, PipelineError> {
-        figure::camera(animation, size, &self.figure, self.weights.as_ref())
+        match self.spec.camera {
+            CameraRule::Fit => figure::camera(animation, size, &self.figure, self.weights.as_ref()),
+            CameraRule::Drawing => Ok(canvas::camera(
+                self.layers.iter().flat_map(|layer| layer.drawings.iter()),
+                size,
+            )),
+        }
     }
 
     /// The character of this shape, seen by `camera`, with `samples` x `samples` samples a pixel, from 1 to 4: what is left to

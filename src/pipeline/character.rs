@@ -12,7 +12,7 @@ use crate::animation::{Animation, Background};
 use crate::pipeline::spec::CharacterSpec;
 use crate::render::drawing::{VectorFrame, VectorGroup, VectorNode};
 use crate::render::puppet::{Puppet, PuppetFrame};
-use crate::render::{Camera, Frame, PaintOptions, Painter};
+use crate::render::{Camera, Frame, PaintOptions, Painter, Sampling};
 use crate::weights::WeightProvider;
 
 /// A character with everything that is computed once: mappings, factorised blends, weights, textures, camera.
@@ -29,6 +29,7 @@ pub struct Character {
     samples: usize,
     notes: Vec<String>,
     animation: Animation,
+    sampling: Sampling,
 }
 
 impl Character {
@@ -93,6 +94,7 @@ impl Character {
             samples,
             notes,
             animation: animation.clone(),
+            sampling: spec.texture.sampling,
         })
     }
 
@@ -222,6 +224,7 @@ impl Character {
             layers: (self.figure.layers.iter().zip(&self.art))
                 .map(|(shape, art)| art.puppet(shape, &self.camera))
                 .collect(),
+            sampling: self.sampling,
         }
     }
 

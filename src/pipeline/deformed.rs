@@ -8,22 +8,23 @@
 //! Handles are given in the coordinates of the drawing as it is in its file, and are reflected with it where the pose that
 //! it belongs to says `mirror = true`.
 
-use std::sync::Arc;
-
 use rayon::prelude::*;
 
 use super::landmarks::as_used;
-use super::spec::{DeformedCopy, HandleMove, LayerSpec, PoseShape, PoseSpec};
+use super::spec::{DeformedCopy, HandleMove, LayerSpec, PoseShape, PoseSpec, ShrunkCopy};
 use super::{MappingReport, PipelineError};
-use crate::input::Drawing;
 use crate::matching::{Correspondence, PoseMatch, SalientPoint};
 use crate::math::Point;
+use crate::math::point::bounding_box;
 use crate::mesh::PointLocator;
 use crate::mesh::validity::{self, ValidityError};
-use crate::outline::{Outline, OutlineError};
+use crate::outline::{Outline, OutlineError, Ring};
 use crate::pose::{
     CarriedOutline, DragReport, HandleDeformation, HandleError, Mapping, Matching, MeshQuality, PoseSet,
 };
+
+/// How large a layer is in a pose that lacks it: far below a pixel, and far above rounding.
+const SHRUNK: f64 = 1e-3;
 
 /// How a deformed copy came about.
 #[derive(Debug, Clone)]
@@ -51,7 +52,6 @@ struct Pose {
 /// The mapping of all poses of `layer` from that of the drawn ones; `report` is completed.
 pub(super) fn with_copies(
     layer: &LayerSpec,
-    drawings: &[Arc<Drawing>],
     drawn: Mapping,
     report: &mut MappingReport,
 ) -> Result<Mapping, PipelineError> {
@@ -72,17 +72,32 @@ pub(super) fn with_copies(
     }
     // Copies of copies need a round each; a valid layer has no circle.
     for _ in 0..names.len() {
-        let ready = |(pose, said): (usize, &PoseSpec)| match &said.shape {
-            PoseShape::Deformed(copy) if poses[pose].is_none() => Some((pose, copy.clone(), poses[copy.of].as_ref()?)),
-            _ => None,
+        let ready = |(pose, said): (usize, &PoseSpec)| {
+            let of = match &said.shape {
+                PoseShape::Drawn(_) => return None,
+                PoseShape::Deformed(copy) => copy.of,
+                PoseShape::Shrunk(copy) => copy.of,
+            };
+            let base = poses[of].as_ref().filter(|_| poses[pose].is_none())?;
+            Some((pose, of, said.shape.clone(), base))
         };
         let round: Vec<_> = layer.poses.iter().enumerate().filter_map(ready).collect();
         let made: Vec<_> = (round.into_par_iter())
-            .map(|(pose, copy, base)| (pose, copy.of, deformed(layer, drawings, &drawn, pose, &copy, base)))
+            .map(|(pose, of, shape, base)| {
+                let made = match &shape {
+                    PoseShape::Shrunk(copy) => shrunk(layer, pose, copy, base).map(|made| (made, None)),
+                    PoseShape::Deformed(copy) => {
+                        let made = deformed(layer, &drawn, pose, copy, base);
+                        made.map(|(made, drag)| (made, Some(drag)))
+                    }
+                    PoseShape::Drawn(_) => Err(PipelineError::stage(&names, Some(pose), "it is no copy")),
+                };
+                (pose, of, made)
+            })
             .collect();
         for (pose, of, made) in made {
             let (deformed, drag) = made?;
-            report.deformed.push(DeformedPose { pose, of, drag });
+            report.deformed.extend(drag.map(|drag| DeformedPose { pose, of, drag }));
             poses[pose] = Some(deformed);
         }
     }
@@ -135,9 +150,37 @@ pub(super) fn with_copies(
     Ok(whole)
 }
 
+/// A pose shrunk to almost a point.
+fn shrunk(layer: &LayerSpec, pose: usize, copy: &ShrunkCopy, base: &Pose) -> Result<Pose, PipelineError> {
+    let (low, high) = bounding_box(base.outline.outer().points()).unwrap_or_default();
+    let middle = 0.5 * (low + high);
+    let place = |p: Point| copy.to + (p - middle) * SHRUNK;
+    let refusal = |problem: String| PipelineError::stage(&layer.names(), Some(pose), problem);
+    let rings = base.outline.rings().iter().map(|ring| ring.map(place));
+    let mut rings = rings
+        .collect::<Result<Vec<Ring>, _>>()
+        .map_err(|error| refusal(error.to_string()))?;
+    let holes = rings.split_off(1);
+    let outer = rings.swap_remove(0);
+    Ok(Pose {
+        positions: base.positions.iter().map(|&p| place(p)).collect(),
+        outline: Outline::new(outer, holes).map_err(|error| refusal(error.to_string()))?,
+        parameters: base.parameters.clone(),
+        landmarks: (base.landmarks.iter())
+            .map(|points| points.iter().map(|&p| place(p)).collect())
+            .collect(),
+        matched: PoseMatch {
+            cost: 0.0,
+            mismatch: vec![0.0; base.matched.mismatch.len()],
+            looks_mirrored: false,
+            reflection_ratio: 1.0,
+            ..base.matched.clone()
+        },
+    })
+}
+
 fn deformed(
     layer: &LayerSpec,
-    drawings: &[Arc<Drawing>],
     drawn: &Mapping,
     pose: usize,
     copy: &DeformedCopy,
@@ -154,7 +197,7 @@ fn deformed(
     let ends = |end: fn(&HandleMove) -> Point| -> Vec<Point> {
         copy.handles
             .iter()
-            .map(|handle| as_used(layer, drawings, drawing, end(handle)))
+            .map(|handle| as_used(layer, drawing, end(handle)))
             .collect()
     };
     let (mut from, mut to) = (ends(|handle| handle.from), ends(|handle| handle.to));

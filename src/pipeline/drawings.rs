@@ -18,10 +18,42 @@ impl DrawnPose {
     /// # Errors
     /// [`InputError`] if the reflected outline is none, for want of digits.
     pub fn as_used(&self) -> Result<Arc<Drawing>, InputError> {
-        match self.facing {
-            Facing::AsDrawn => Ok(Arc::clone(&self.drawing)),
-            Facing::Mirrored => mirrored(self.drawing.as_ref().clone()).map(Arc::new),
+        if self.facing == Facing::AsDrawn && self.shift == Point::zeros() {
+            return Ok(Arc::clone(&self.drawing));
         }
+        self.placed(self.drawing.as_ref().clone()).map(Arc::new)
+    }
+
+    /// A place of the drawing in the drawing as it is used.
+    #[must_use]
+    pub fn used_place(&self, place: Point) -> Point {
+        self.turned(place) + self.shift
+    }
+
+    /// The place of the drawing that [`Self::used_place`] takes to `place`.
+    #[must_use]
+    pub fn drawn_place(&self, place: Point) -> Point {
+        self.turned(place - self.shift)
+    }
+
+    /// A place reflected if the pose is. Its own inverse.
+    fn turned(&self, place: Point) -> Point {
+        match self.facing {
+            Facing::AsDrawn => place,
+            Facing::Mirrored => reflected(place, self.axis.unwrap_or_else(|| mirror_axis(&self.drawing.outline))),
+        }
+    }
+
+    /// A drawing of this pose reflected and moved as the pose says.
+    fn placed(&self, drawing: Drawing) -> Result<Drawing, InputError> {
+        let turned = match self.facing {
+            Facing::AsDrawn => drawing,
+            Facing::Mirrored => mirrored(drawing, self.axis)?,
+        };
+        if self.shift == Point::zeros() {
+            return Ok(turned);
+        }
+        moved(turned, self.shift)
     }
 
     /// The drawing as it is used, of a vector drawing whose pixels are made again, `pixels_per_unit` of them.
@@ -30,11 +62,7 @@ impl DrawnPose {
             pixels_per_unit: Some(pixels_per_unit),
             ..svg.options.clone()
         };
-        let drawing = read_svg(&svg.bytes, &options)?;
-        match self.facing {
-            Facing::AsDrawn => Ok(drawing),
-            Facing::Mirrored => mirrored(drawing),
-        }
+        self.placed(read_svg(&svg.bytes, &options)?)
     }
 }
 
@@ -98,6 +126,8 @@ pub(super) fn sharpen(layer: &LayerSpec, drawings: &mut [Arc<Drawing>], frame_sc
                     art: None,
                     notes: Vec::new(),
                     unit_px: drawing.unit_px,
+                    canvas: drawing.canvas,
+                    parts: Vec::new(),
                 });
             }
             Ok(())
@@ -114,19 +144,22 @@ fn refusal(layer: &LayerSpec, pose: usize, source: InputError) -> PipelineError 
     }
 }
 
-/// The drawing reflected left to right about the middle of its outline, so that it stays where it is.
-pub(super) fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
+/// The drawing reflected left to right, about the middle of its outline if nothing else is said, so that it stays where it is. Without its
+/// parts, which are drawings of their own by then.
+pub(super) fn mirrored(drawing: Drawing, axis: Option<f64>) -> Result<Drawing, InputError> {
     let Drawing {
         outline,
         mut picture,
         art,
         notes,
         unit_px,
+        canvas,
+        parts: _,
     } = drawing;
     for row in picture.pixels.chunks_exact_mut(picture.width.max(1)) {
         row.reverse();
     }
-    let axis = mirror_axis(&outline);
+    let axis = axis.unwrap_or_else(|| mirror_axis(&outline));
     picture.origin.x = axis - picture.origin.x - picture.width as f64 / picture.pixels_per_unit;
     let reflect = |ring: &Ring| ring.map(|p| reflected(p, axis));
     let degenerate = |_| OutlineError::NoArea { ring: 0 };
@@ -149,6 +182,33 @@ pub(super) fn mirrored(drawing: Drawing) -> Result<Drawing, InputError> {
         art: art.map(|art| art.mirrored(axis)),
         notes,
         unit_px,
+        canvas,
+        parts: Vec::new(),
+    })
+}
+
+/// The drawing moved by `shift`, its page with it.
+fn moved(drawing: Drawing, shift: Point) -> Result<Drawing, InputError> {
+    let degenerate = |_| OutlineError::NoArea { ring: 0 };
+    let all = |rings: &[Ring]| -> Result<Vec<Ring>, OutlineError> {
+        rings
+            .iter()
+            .map(|ring| ring.map(|p| p + shift).map_err(degenerate))
+            .collect()
+    };
+    let outline = &drawing.outline;
+    let outer = outline.outer().map(|p| p + shift).map_err(degenerate)?;
+    let outline = Outline::new(outer, all(outline.holes())?)?.with_openings(all(outline.openings())?);
+    let mut picture = drawing.picture;
+    picture.origin += shift;
+    Ok(Drawing {
+        outline,
+        picture,
+        art: drawing.art.map(|art| art.moved(shift)),
+        notes: drawing.notes,
+        unit_px: drawing.unit_px,
+        canvas: drawing.canvas.moved(shift),
+        parts: Vec::new(),
     })
 }
 
@@ -165,7 +225,7 @@ pub(super) fn reflected(p: Point, axis: f64) -> Point {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::Picture;
+    use crate::input::{Canvas, Picture};
 
     #[test]
     fn mirroring_twice_changes_nothing_and_once_moves_pixels_with_the_outline() {
@@ -182,13 +242,15 @@ mod tests {
             art: None,
             notes: vec![],
             unit_px: 1.0,
+            canvas: Canvas::of_pixels(4, 1),
+            parts: vec![],
         };
-        let once = mirrored(drawing.clone()).expect("a drawing");
+        let once = mirrored(drawing.clone(), None).expect("a drawing");
         // The outline is one unit wide, from 1 to 2, and stays there; so does the pixel under it.
         assert!(once.outline.outer().points().contains(&Point::new(2.0, 2.0)));
         assert_eq!((once.picture.origin.x, once.picture.pixels[2]), (-1.0, [1; 4]));
         assert_eq!(once.outline.area(), drawing.outline.area());
-        let twice = mirrored(once).expect("a drawing");
+        let twice = mirrored(once, None).expect("a drawing");
         assert_eq!(twice.picture, drawing.picture);
         assert_eq!(twice.outline, drawing.outline);
     }

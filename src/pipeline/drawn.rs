@@ -127,7 +127,7 @@ fn beginnings(candidates: &RingCandidates, pose: usize) -> Vec<RingPairs> {
 
 /// How much a drawing, reflected, differs from the reference where it is registered to it; `None` where it cannot be.
 fn residual_reflected(drawing: &Drawing, reference: &Ring, shown: &Arc<Appearance>) -> Option<f64> {
-    let reflected = mirrored(drawing.clone()).ok()?;
+    let reflected = mirrored(drawing.clone(), None).ok()?;
     let rings = [reference.clone(), reflected.outline.outer().clone()];
     let appearances = [Arc::clone(shown), Arc::new(Appearance::new(&reflected))];
     let options = MatchOptions {

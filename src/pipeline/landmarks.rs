@@ -9,11 +9,10 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::PipelineError;
-use super::drawings::{mirror_axis, reflected};
 use super::inside::Obstacles;
 use super::landmark_path;
 use super::sides::Sides;
-use super::spec::{Facing, LayerSpec};
+use super::spec::LayerSpec;
 use crate::compatible::{CompatibleMesh, FeaturePath, Features, PathEnd};
 use crate::input::Drawing;
 use crate::matching::Landmark;
@@ -123,7 +122,7 @@ pub(super) fn sorted(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Lan
             ends[end] = Some(sorted.on_outline_at(Landmark { name, at }));
         }
         let place = |pose: usize, points: &Vec<Point>| -> Vec<Point> {
-            points.iter().map(|&p| as_used(layer, drawings, pose, p)).collect()
+            points.iter().map(|&p| as_used(layer, pose, p)).collect()
         };
         let at = path
             .at
@@ -188,7 +187,6 @@ impl Landmarks {
     pub(super) fn features(
         &self,
         layer: &LayerSpec,
-        drawings: &[Arc<Drawing>],
         polygons: &[Outline],
         anchors: &[Vec<Point>],
         tolerance: f64,
@@ -272,7 +270,7 @@ impl Landmarks {
                     .and_then(|place| obstacles[pose].nearest_free(&polygons[pose], place, is_allowed))
                     .ok_or_else(|| lacking(pose, &landmark.name))?;
                 obstacles[pose].add_point(place);
-                let as_written = as_used(layer, drawings, pose, place);
+                let as_written = as_drawn(layer, pose, place);
                 notes.push(format!(
                     "landmark '{}' has no place in pose '{}': it was put at ({:.1}, {:.1}); give it one if that is wrong",
                     landmark.name, layer.poses[pose].name, as_written.x, as_written.y
@@ -310,15 +308,17 @@ fn nearest_vertex(polygons: &[Outline], places: &[Point]) -> usize {
         .unwrap_or(0)
 }
 
-/// A place of the source in the drawing as it is used. Its own inverse. `pose` counts the drawn poses.
-pub(super) fn as_used(layer: &LayerSpec, drawings: &[Arc<Drawing>], pose: usize, place: Point) -> Point {
-    let drawn = layer.drawn_poses();
-    match drawn.get(pose).and_then(|&pose| layer.drawing_of(pose)) {
-        Some((_, source)) if source.facing == Facing::Mirrored => {
-            reflected(place, mirror_axis(&drawings[pose].outline))
-        }
-        _ => place,
-    }
+/// A place of the source in the drawing as it is used. `pose` counts the drawn poses.
+pub(super) fn as_used(layer: &LayerSpec, pose: usize, place: Point) -> Point {
+    layer.drawn().nth(pose).map_or(place, |source| source.used_place(place))
+}
+
+/// The place of the source that [`as_used`] takes to `place`.
+pub(super) fn as_drawn(layer: &LayerSpec, pose: usize, place: Point) -> Point {
+    layer
+        .drawn()
+        .nth(pose)
+        .map_or(place, |source| source.drawn_place(place))
 }
 
 /// The parameters of an outline landmark.
@@ -358,7 +358,7 @@ impl Found {
         pose: usize,
         place: Point,
     ) -> Self {
-        let place = as_used(layer, drawings, pose, place);
+        let place = as_used(layer, pose, place);
         let (curve, size) = &measured[pose];
         let (nearest, distance) = curve.nearest(place);
         // Of the vertices, the nearer end of the edge that it lies on.

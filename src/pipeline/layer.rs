@@ -5,7 +5,7 @@
 //! Poses that lack a layer fade it out, by what their drawings count in the frame.
 
 use super::blending::blend_options;
-use super::spec::{CharacterSpec, LandmarkSpec, LayerSpec};
+use super::spec::{CharacterSpec, LandmarkSpec, LayerRole, LayerSpec};
 use super::{PipelineError, ShapePoint};
 use crate::blend::{BlendOptions, BlendReport, RigidBlend};
 use crate::math::{Point, restricted_weights};
@@ -65,6 +65,7 @@ impl Part<'_> {
             name: self.layer.name.clone(),
             poses: self.poses.clone(),
             originals: self.layer.originals(),
+            vanishing: self.layer.vanishing(),
             silhouette,
             mapping,
             options,
@@ -94,7 +95,7 @@ impl Part<'_> {
     }
 
     fn note_turns(&self, blend: &RigidBlend, notes: &mut Vec<String>) {
-        if blend.turns_are_ambiguous() {
+        if blend.turns_are_ambiguous() && self.layer.role == LayerRole::Body {
             notes.push(self.remark(
                 "some poses are turned by half a turn against one another, so either way round is as good; \
                  set `turns` on a pose to choose",
@@ -140,8 +141,8 @@ fn shape_point(layer: &LayerSpec, landmark: &LandmarkSpec, shape: &LayerShape, p
     let positions = shape.mapping.poses.positions();
     let mut anchors = Vec::new();
     for pose in 0..poses.len() {
-        let (original, _) = layer.drawing_of(pose)?;
-        let place = landmark.at[original]?;
+        let (original, drawn) = layer.drawing_of(pose)?;
+        let place = drawn.used_place(landmark.at[original]?);
         anchors.push(PointLocator::new(triangles, &positions[poses[original]]).bind(place)?);
     }
     Some(ShapePoint::from_anchors(anchors))
@@ -154,6 +155,8 @@ pub struct LayerShape {
     poses: Vec<usize>,
     /// For each of its poses, the one whose drawing it shows.
     originals: Vec<usize>,
+    /// For each of its poses, whether it is nothing there but the place where it grows from.
+    vanishing: Vec<bool>,
     pub(super) silhouette: Silhouette,
     mapping: Mapping,
     options: BlendOptions,
@@ -241,7 +244,8 @@ impl LayerShape {
         let own = self.own_weights(weights);
         let mut positions = Vec::new();
         let report = self.blend.blend(&own, &mut self.blend.scratch(), &mut positions)?;
-        let (texture_weights, opacity) = self.seen(&own, shown, sharpness)?;
+        let (texture_weights, seen) = self.seen(&own, shown, sharpness)?;
+        let opacity = seen * self.grown(&own);
         Ok(PosedLayer {
             positions,
             weights: own,
@@ -249,6 +253,18 @@ impl LayerShape {
             opacity,
             report,
         })
+    }
+
+    /// How much of it is seen where it grows from a point: all but at the very beginning.
+    fn grown(&self, own: &[f64]) -> f64 {
+        /// The size, relative to its own, from which on it is seen in full.
+        const SEEN: f64 = 0.06;
+        if !self.vanishing.contains(&true) {
+            return 1.0;
+        }
+        let vanished = own.iter().zip(&self.vanishing).filter(|(_, vanishing)| **vanishing);
+        let size = 1.0 - vanished.map(|(weight, _)| weight).sum::<f64>();
+        (size / SEEN).clamp(0.0, 1.0)
     }
 
     fn seen(&self, own: &[f64], shown: &[f64], sharpness: f64) -> Result<(Vec<f64>, f64), TextureError> {

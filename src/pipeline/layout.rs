@@ -2,7 +2,7 @@
 
 use super::PipelineError;
 use super::layer::LayerShape;
-use super::spec::{CharacterSpec, Places};
+use super::spec::{CharacterSpec, LayerRole, Places};
 use crate::pose::{Mapping, deformation_distances};
 use crate::weights::arrange;
 
@@ -15,13 +15,16 @@ pub fn automatic_places(mapping: &Mapping) -> Vec<Vec<f64>> {
 }
 
 impl CharacterSpec {
-    /// The layer that automatic places come from: the first that all poses have.
+    /// The layer that automatic places come from: the first that all poses have, loose parts last.
     ///
     /// # Errors
     /// [`PipelineError::NoCommonLayer`] if there is none.
     pub fn layer_of_places(&self) -> Result<usize, PipelineError> {
         let has_all = |k: &usize| self.layers[*k].poses.len() == self.space.poses.len();
-        (0..self.layers.len()).find(has_all).ok_or(PipelineError::NoCommonLayer)
+        let is_body = |k: &usize| self.layers[*k].role == LayerRole::Body;
+        let common: Vec<usize> = (0..self.layers.len()).filter(has_all).collect();
+        let first = common.iter().find(|k| is_body(k)).or(common.first());
+        first.copied().ok_or(PipelineError::NoCommonLayer)
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::boundaries::Boundaries;
 use super::drawings::used_drawings;
 use super::landmarks::{self, Landmarks};
-use super::spec::LayerSpec;
+use super::spec::{LayerRole, LayerSpec};
 use super::triangulation::{self, Labels};
 use super::{MappingReport, PipelineError, Stage, deformed};
 use crate::compatible::{
@@ -53,7 +53,7 @@ pub fn map_layer_observed(
     rayon::scope(|_| {
         let drawings = used_drawings(layer, |_| None)?;
         let (mapping, mut report, _) = map_drawn(&layer.only_drawn(), &drawings, None, begins)?;
-        let mapping = deformed::with_copies(layer, &drawings, mapping, &mut report)?;
+        let mapping = deformed::with_copies(layer, mapping, &mut report)?;
         Ok((mapping, report))
     })
 }
@@ -67,7 +67,7 @@ pub(super) fn map_drawings_again(
 ) -> Result<(Mapping, MappingReport, Arc<Boundaries>), PipelineError> {
     let drawn = layer.only_drawn();
     let (mapping, mut report, boundaries) = map_drawn(&drawn, drawings, before, &mut |_| ())?;
-    let mapping = deformed::with_copies(layer, drawings, mapping, &mut report)?;
+    let mapping = deformed::with_copies(layer, mapping, &mut report)?;
     Ok((mapping, report, boundaries))
 }
 
@@ -83,7 +83,9 @@ fn map_drawn(
     for (name, drawing) in names.iter().zip(drawings) {
         notes.extend(drawing.notes.iter().map(|note| format!("pose '{name}': {note}")));
     }
-    notes.extend(note_on_units(&names, drawings));
+    if layer.role == LayerRole::Body {
+        notes.extend(note_on_units(&names, drawings));
+    }
     check_hole_counts(&names, drawings)?;
     let landmarks = landmarks::sorted(layer, drawings)?;
 
@@ -109,7 +111,8 @@ fn map_drawn(
         ..
     } = boundaries.as_ref();
     for (pose, name) in names.iter().enumerate() {
-        if matched.outer.poses[pose].looks_mirrored {
+        // A loose part cannot be reflected by itself.
+        if matched.outer.poses[pose].looks_mirrored && layer.role == LayerRole::Body {
             notes.push(format!(
                 "pose '{name}' would match better reflected; set `mirror = true` if it faces the other way"
             ));
@@ -127,8 +130,7 @@ fn map_drawn(
         .iter()
         .map(|at| at.iter().zip(&measured).map(|(&t, outline)| outline.at(t)).collect())
         .collect();
-    let triangulated =
-        |polygons: &[Outline], effort| bare_mesh(layer, drawings, polygons, &landmarks, &anchors, effort);
+    let triangulated = |polygons: &[Outline], effort| bare_mesh(layer, polygons, &landmarks, &anchors, effort);
     let mut bare = triangulated(&simplified.polygons, Effort::Full)?;
     let mut first = None;
     let varied = if bare.mesh.steiner > 0 {
@@ -261,7 +263,6 @@ struct Bare {
 /// The triangulation of the polygons with everything inside them.
 fn bare_mesh(
     layer: &LayerSpec,
-    drawings: &[Arc<Drawing>],
     polygons: &[Outline],
     landmarks: &Landmarks,
     anchors: &[Vec<Point>],
@@ -276,13 +277,7 @@ fn bare_mesh(
     };
     let mut refusal = PipelineError::stage(&[], None, "no polygon");
     for share in FINER_LINES {
-        let (features, notes) = landmarks.features(
-            layer,
-            drawings,
-            polygons,
-            anchors,
-            share * layer.mesh.simplify.tolerance,
-        )?;
+        let (features, notes) = landmarks.features(layer, polygons, anchors, share * layer.mesh.simplify.tolerance)?;
         match triangulate_features(polygons, &features, effort) {
             Ok((mesh, report)) => return Ok(Bare { mesh, report, notes }),
             Err(error) => {

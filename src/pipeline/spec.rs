@@ -36,7 +36,7 @@ use crate::blend::BlendOptions;
 use crate::compatible::{RefineOptions, SimplifyOptions};
 use crate::input::{Drawing, SvgOptions};
 use crate::math::Point;
-use crate::render::ColourBlend;
+use crate::render::{ColourBlend, Sampling};
 use crate::weights::{BiharmonicOptions, RbfOptions};
 
 /// Everything the artist says about a character.
@@ -51,6 +51,25 @@ pub struct CharacterSpec {
     pub space: SpaceSpec,
     /// What the layers are drawn with.
     pub texture: TextureSpec,
+    /// What frames show. [`CharacterSpec::on_canvas`] sets it together with what else that takes.
+    pub camera: CameraRule,
+    /// What the artist should know of how it was made, one line a remark; the first notes of its build.
+    pub notes: Vec<String>,
+}
+
+/// What frames show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum CameraRule {
+    /// All poses and the whole animation, as large as they fit.
+    #[default]
+    Fit,
+    /// The canvas of the drawings: a frame at a pose lies over its drawing.
+    Drawing,
+}
+
+impl CameraRule {
+    /// What each is called in scene files and on the command line.
+    pub const NAMED: [(&'static str, Self); 2] = [("fit", Self::Fit), ("drawing", Self::Drawing)];
 }
 
 /// The pose space: which poses there are, where they lie, how their weights fall off.
@@ -100,6 +119,8 @@ pub struct TextureSpec {
     pub blending: ColourBlend,
     /// Whether vector drawings are drawn as curves. Default: they are.
     pub art: ArtChoice,
+    /// How colours are taken from pictures. Default: smoothly.
+    pub sampling: Sampling,
 }
 
 impl Default for TextureSpec {
@@ -108,6 +129,7 @@ impl Default for TextureSpec {
             sharpness: 0.5,
             blending: ColourBlend::default(),
             art: ArtChoice::default(),
+            sampling: Sampling::default(),
         }
     }
 }
@@ -144,6 +166,18 @@ pub struct LayerSpec {
     pub attachment: Option<Attachment>,
     /// What becomes of holes that not all of its drawings have.
     pub unshared_holes: UnsharedHoles,
+    /// What it is of the character.
+    pub role: LayerRole,
+}
+
+/// What a layer is of a character.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum LayerRole {
+    /// A layer that the artist made, or the largest of the parts that it fell into.
+    #[default]
+    Body,
+    /// A loose part of one ([`CharacterSpec::with_loose_parts`]).
+    LoosePart,
 }
 
 /// What becomes of holes that not all drawings of a layer have.
@@ -173,6 +207,17 @@ pub enum PoseShape {
     Drawn(DrawnPose),
     /// Another pose of the layer, deformed (NWM 3.2).
     Deformed(DeformedCopy),
+    /// Another pose of the layer, shrunk to almost a point: the pose lacks the layer, which grows from there.
+    Shrunk(ShrunkCopy),
+}
+
+/// Where a layer that a pose lacks grows from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShrunkCopy {
+    /// A pose that is drawn, by its place in the layer.
+    pub of: usize,
+    /// The place that it grows from, in the coordinates of the pose that lacks it, as its other layers are used there.
+    pub to: Point,
 }
 
 /// A pose with a drawing of its own.
@@ -185,6 +230,11 @@ pub struct DrawnPose {
     pub facing: Facing,
     /// What the pixels of a vector drawing can be made of again, finer; `None` (the default) if they are all there is.
     pub svg: Option<Arc<SvgSource>>,
+    /// Twice the x of the line about which it is reflected, if it is; `None` (the default) for the middle of its outline.
+    pub axis: Option<f64>,
+    /// By how much it is moved, after it was reflected, in source units; zero (the default) if it is where its file has it. Landmarks
+    /// and handles are given on the drawing as it is.
+    pub shift: Point,
 }
 
 impl PartialEq for DrawnPose {
@@ -196,6 +246,8 @@ impl PartialEq for DrawnPose {
         };
         // Drawings are shared rather than copied: most often one look tells.
         self.facing == other.facing
+            && self.axis == other.axis
+            && self.shift == other.shift
             && is_same_svg
             && (Arc::ptr_eq(&self.drawing, &other.drawing) || self.drawing == other.drawing)
     }
@@ -205,7 +257,7 @@ impl PartialEq for DrawnPose {
 #[derive(Debug, Clone, PartialEq)]
 pub struct SvgSource {
     /// The file's bytes.
-    pub bytes: Vec<u8>,
+    pub bytes: Arc<[u8]>,
     /// How the drawing was read from them.
     pub options: SvgOptions,
 }
@@ -297,6 +349,8 @@ impl CharacterSpec {
                 weights: WeightOptions::default(),
             },
             texture: TextureSpec::default(),
+            camera: CameraRule::default(),
+            notes: Vec::new(),
         }
     }
 
@@ -322,6 +376,7 @@ impl LayerSpec {
             blend: BlendOptions::default(),
             attachment: None,
             unshared_holes: UnsharedHoles::default(),
+            role: LayerRole::default(),
         }
     }
 }
@@ -354,6 +409,8 @@ impl DrawnPose {
             drawing: drawing.into(),
             facing: Facing::default(),
             svg: None,
+            axis: None,
+            shift: Point::zeros(),
         }
     }
 }

@@ -98,6 +98,9 @@ pub enum MappingFileError {
 struct MappingText {
     format: String,
     version: u32,
+    /// What is mapped of a character with several layers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    layer: Option<String>,
     poses: Vec<PoseText>,
     triangles: Vec<[usize; 3]>,
     rings: Vec<Vec<usize>>,
@@ -112,6 +115,25 @@ struct PoseText {
     #[serde(default)]
     holes: Vec<Vec<[f64; 2]>>,
     vertices: Vec<[f64; 2]>,
+    /// All pieces of a drawing that has several.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    parts: Vec<PartText>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct PartText {
+    outline: Vec<[f64; 2]>,
+    holes: Vec<Vec<[f64; 2]>>,
+}
+
+impl PartText {
+    fn of(outline: &Outline) -> Self {
+        let holes = outline.holes().iter().chain(outline.openings());
+        Self {
+            outline: pairs(outline.outer().points()),
+            holes: holes.map(|hole| pairs(hole.points())).collect(),
+        }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -124,26 +146,29 @@ impl Mapping {
     /// The mapping as JSON text, with a final line break.
     #[must_use]
     pub fn to_json(&self) -> String {
+        self.to_json_of(None, &[])
+    }
+
+    /// The same of one layer of several, with its name, and of drawings of several pieces: `parts` has for each pose the outlines of
+    /// all of them, or none. Readers need neither.
+    #[must_use]
+    pub fn to_json_of(&self, layer: Option<&str>, parts: &[Vec<Outline>]) -> String {
         let names = self.poses.names();
+        let pose = |(pose, outline): (usize, &Outline)| {
+            let PartText { outline, holes } = PartText::of(outline);
+            PoseText {
+                name: names[pose].clone(),
+                outline,
+                holes,
+                vertices: pairs(&self.poses.positions()[pose]),
+                parts: parts.get(pose).into_iter().flatten().map(PartText::of).collect(),
+            }
+        };
         let text = MappingText {
             format: FORMAT.to_owned(),
             version: VERSION,
-            poses: names
-                .iter()
-                .zip(self.poses.positions())
-                .zip(&self.outlines)
-                .map(|((name, positions), outline)| PoseText {
-                    name: name.clone(),
-                    outline: pairs(outline.outer().points()),
-                    holes: outline
-                        .holes()
-                        .iter()
-                        .chain(outline.openings())
-                        .map(|hole| pairs(hole.points()))
-                        .collect(),
-                    vertices: pairs(positions),
-                })
-                .collect(),
+            layer: layer.map(str::to_owned),
+            poses: self.outlines.iter().take(names.len()).enumerate().map(pose).collect(),
             triangles: self.poses.topology().triangles().to_vec(),
             rings: self.rings.clone(),
             steiner: self.steiner,

@@ -33,6 +33,23 @@ impl Camera {
         }
     }
 
+    /// A camera that shows the rectangle between two corners, centred and as large as it fits, in a frame of `size` pixels (columns,
+    /// rows, neither 0). What is left over is divided to whole pixels, so that in a frame whose size is a whole multiple of the rectangle's
+    /// units become squares of whole pixels.
+    #[must_use]
+    pub fn of_canvas([low, high]: [Point; 2], size: [usize; 2]) -> Self {
+        let extent = high - low;
+        let frame = Point::new(size[0] as f64, size[1] as f64);
+        let scale = (frame.x / extent.x).min(frame.y / extent.y);
+        let scale = if scale.is_finite() && scale > 0.0 { scale } else { 1.0 };
+        let room = (0.5 * (frame - extent * scale)).map(f64::floor);
+        Self {
+            scale,
+            shift: room - low * scale,
+            size,
+        }
+    }
+
     /// Pixels a source unit spans.
     #[must_use]
     pub fn scale(&self) -> f64 {
@@ -63,6 +80,18 @@ mod tests {
         assert!((left - Point::new(4.0, 50.0)).norm() < 1e-9);
         let right = camera.to_pixels(Point::new(90.0, 15.0));
         assert!((right - Point::new(196.0, 50.0)).norm() < 1e-9);
+    }
+
+    #[test]
+    fn a_canvas_is_shown_as_large_as_it_fits_from_whole_pixels_on() {
+        let canvas = [Point::new(10.0, -4.0), Point::new(42.0, 28.0)];
+        let place = |size| {
+            let camera = Camera::of_canvas(canvas, size);
+            (camera.scale(), camera.to_pixels(canvas[0]))
+        };
+        assert_eq!(place([32, 32]), (1.0, Point::zeros()));
+        assert_eq!(place([96, 96]), (3.0, Point::zeros()));
+        assert_eq!(place([67, 64]), (2.0, Point::new(1.0, 0.0)));
     }
 
     #[test]

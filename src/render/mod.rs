@@ -16,6 +16,7 @@ pub mod drawing;
 mod frame;
 mod level;
 mod nearest_seed;
+mod nearest_texel;
 mod painter;
 pub mod puppet;
 mod puppet_texture;
@@ -33,7 +34,7 @@ pub use drawing::{
     Spread, Stop, Stroke, Subpath, VectorFrame, VectorGroup, VectorNode, VectorPicture, VectorShape,
 };
 pub use frame::Frame;
-pub use painter::{PaintOptions, Painter, PoseTexture};
+pub use painter::{PaintOptions, Painter, PoseTexture, Sampling};
 pub use puppet::{Puppet, PuppetFrame, PuppetLayer, PuppetLayerFrame, PuppetPose, PuppetTexture};
 pub use silhouette::Silhouette;
 pub use texture::Texture;

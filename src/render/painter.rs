@@ -19,6 +19,7 @@ use rayon::prelude::*;
 use super::band::{BAND_ROWS, Band, BandPainter, Shown, Window, fill_unreached};
 use super::colour_blend::{ColourBlend, Linear, Plain};
 use super::coverage::edges;
+use super::nearest_texel::{NearestTexture, paint_nearest};
 use super::raster::PlacedVertices;
 use super::sampler::whole_weights;
 use super::{Camera, Frame, Silhouette, Texture};
@@ -44,8 +45,25 @@ pub struct PaintOptions {
     pub blending: ColourBlend,
     /// Colour samples along a pixel's side, 1 to [`PaintOptions::MOST_SAMPLES`]; others are moved there. More show finer
     /// detail where the mesh is turned or squeezed, and take longer; textures should be made for as many
-    /// ([`Texture::new`]). The edge is exact with any. Default: 1.
+    /// ([`Texture::new`]). The edge is exact with any. Default: 1. [`Sampling::Nearest`] looks at one.
     pub supersample: usize,
+    /// How colours are taken from textures. Default: [`Sampling::Smooth`].
+    pub sampling: Sampling,
+}
+
+/// How colours are taken from textures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sampling {
+    /// Interpolated between texels; the outline is anti-aliased.
+    #[default]
+    Smooth,
+    /// The nearest texel; a pixel is inside the figure or it is not. For pixel art.
+    Nearest,
+}
+
+impl Sampling {
+    /// What each is called in scene files.
+    pub const NAMED: [(&'static str, Self); 2] = [("smooth", Self::Smooth), ("nearest", Self::Nearest)];
 }
 
 impl PaintOptions {
@@ -58,6 +76,7 @@ impl Default for PaintOptions {
         Self {
             blending: ColourBlend::Plain,
             supersample: 1,
+            sampling: Sampling::Smooth,
         }
     }
 }
@@ -143,6 +162,9 @@ impl Painter {
     /// `texture_weights`, one a pose; those that are not positive show nothing. The background is clear.
     #[must_use]
     pub fn paint(&self, positions: &[Point], weights: &[f64], texture_weights: &[f64]) -> Frame {
+        if self.options.sampling == Sampling::Nearest {
+            return self.paint_nearest(positions, texture_weights);
+        }
         let [columns, rows] = self.camera.size();
         let mut frame = Frame::filled(columns, rows, [0; 4]);
         let rings: Vec<Vec<Point>> = self
@@ -210,8 +232,29 @@ impl Painter {
         frame
     }
 
-    /// The textures that count, in the pictures that fit their size in the frame.
-    fn shown<'a>(&'a self, vertices: &PlacedVertices, texture_weights: &[f64]) -> Vec<Shown<'a>> {
+    /// The frame by nearest texels.
+    fn paint_nearest(&self, positions: &[Point], texture_weights: &[f64]) -> Frame {
+        let counting = self.counting(texture_weights);
+        let weights: Vec<f64> = counting.iter().map(|(_, weight)| *weight).collect();
+        let shown: Vec<NearestTexture<'_>> = (counting.iter().zip(whole_weights(&weights)))
+            .map(|((of, _), weight)| NearestTexture {
+                texture: &of.texture,
+                texels: &of.texels,
+                weight,
+            })
+            .collect();
+        let placed: Vec<Point> = positions.iter().map(|p| self.camera.to_pixels(*p)).collect();
+        paint_nearest(
+            &self.triangles,
+            &placed,
+            &shown,
+            self.camera.size(),
+            self.options.blending,
+        )
+    }
+
+    /// The textures that count, with their weights.
+    fn counting(&self, texture_weights: &[f64]) -> Vec<(&OnMesh, f64)> {
         let mut of_textures = vec![0.0; self.textures.len()];
         for (texture, weight) in self.texture_of.iter().zip(texture_weights) {
             if let Some(sum) = of_textures.get_mut(*texture) {
@@ -219,13 +262,17 @@ impl Painter {
             }
         }
         let total: f64 = of_textures.iter().filter(|weight| **weight > 0.0).sum();
-        let counting: Vec<(&OnMesh, f64)> = self
-            .textures
+        self.textures
             .iter()
             .zip(of_textures)
             .filter_map(|(of, weight)| Some((of.as_ref()?, weight)))
             .filter(|(_, weight)| weight.is_finite() && *weight > FAINTEST_WEIGHT * total)
-            .collect();
+            .collect()
+    }
+
+    /// The textures that count, in the pictures that fit their size in the frame.
+    fn shown<'a>(&'a self, vertices: &PlacedVertices, texture_weights: &[f64]) -> Vec<Shown<'a>> {
+        let counting = self.counting(texture_weights);
         let weights: Vec<f64> = counting.iter().map(|(_, weight)| *weight).collect();
         let samples = vertices.covered_area(&self.triangles);
         counting
@@ -352,7 +399,11 @@ mod tests {
 
     #[test]
     fn samples_and_light_change_averages_and_nothing_else() {
-        let options = |supersample, blending| PaintOptions { blending, supersample };
+        let options = |supersample, blending| PaintOptions {
+            blending,
+            supersample,
+            ..PaintOptions::default()
+        };
         let (plain, mapping) = painter();
         let [a, b] = [0, 1].map(|k| &mapping.poses.positions()[k]);
         let middle: Vec<Point> = a.iter().zip(b).map(|(p, q)| (p + q) * 0.5).collect();

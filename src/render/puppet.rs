@@ -3,7 +3,7 @@
 //! A [`Puppet`] does not change over an animation; a [`PuppetFrame`] is what does. Meshes enclose the drawings, so what is seen is
 //! decided by the textures' alpha, not by the mesh's edge.
 
-use super::Camera;
+use super::{Camera, Sampling};
 use crate::math::Point;
 use crate::pose::Mapping;
 
@@ -14,6 +14,8 @@ pub struct Puppet {
     pub size: [usize; 2],
     /// In the order of the scene.
     pub layers: Vec<PuppetLayer>,
+    /// How colours are taken from the textures.
+    pub sampling: Sampling,
 }
 
 /// One layer: a mesh and its textures.

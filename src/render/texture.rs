@@ -17,9 +17,10 @@
 use super::coverage::Coverage;
 use super::level::{Level, MOST_TEXELS};
 use super::nearest_seed::{distance_squared, nearest_seeds};
+use super::nearest_texel::centres_inside;
 use crate::input::Picture;
 use crate::math::Point;
-use crate::outline::Outline;
+use crate::outline::{Outline, Ring};
 
 /// The width of the band in which alpha is taken to be the drawing's edge, in pixels of the picture: anti-aliasing is
 /// one to two pixels wide, a scaled or compressed drawing's edge a little more.
@@ -46,6 +47,8 @@ pub struct Texture {
     levels: Vec<Level>,
     origin: Point,
     pixels_per_unit: f64,
+    /// Of a texture for nearest texels, which of them lie inside the outline, row by row; otherwise empty.
+    inside: Vec<bool>,
 }
 
 impl std::fmt::Debug for Texture {
@@ -77,6 +80,7 @@ impl Texture {
             levels: vec![finest],
             origin: picture.origin,
             pixels_per_unit,
+            inside: Vec::new(),
         };
         texture.bleed(outline);
         for _ in 0..HALVINGS {
@@ -88,6 +92,48 @@ impl Texture {
             texture.levels.push(half);
         }
         texture
+    }
+
+    /// The texture of `picture`, whose shape is `outline`, for frames that show nearest texels: the picture's own pixels inside the
+    /// outline, outside the nearest of them.
+    #[must_use]
+    pub fn for_nearest(picture: &Picture, outline: &Outline) -> Self {
+        let mut texture = Self {
+            levels: vec![Level::new(picture.width, picture.height, picture.pixels.clone())],
+            origin: picture.origin,
+            pixels_per_unit: picture.pixels_per_unit,
+            inside: Vec::new(),
+        };
+        let [width, height] = texture.size();
+        let place = |ring: &Ring| -> Vec<Point> { ring.points().iter().map(|p| texture.to_texels(*p)).collect() };
+        let rings: Vec<Vec<Point>> = outline.rings().iter().map(place).collect();
+        let mut inside = vec![false; width * height];
+        for (row, inside) in inside.chunks_exact_mut(width).enumerate() {
+            for columns in centres_inside(&rings, row, width) {
+                inside[columns].fill(true);
+            }
+        }
+        if let Some(nearest) = nearest_seeds(width, height, |i| inside[i]) {
+            let texels = texture.levels[0].texels_mut();
+            for (i, seed) in nearest.iter().enumerate() {
+                texels[i] = texels[*seed as usize];
+            }
+        }
+        texture.inside = inside;
+        texture
+    }
+
+    /// The texel nearest to a place in texels, and whether it lies inside the outline; beyond the border it does not.
+    pub(super) fn nearest(&self, place: Point) -> ([u8; 4], bool) {
+        let [width, height] = self.size();
+        // Casts saturate, and what is not a number becomes 0.
+        let (x, y) = (place.x.floor(), place.y.floor());
+        let column = (x.max(0.0) as usize).min(width - 1);
+        let row = (y.max(0.0) as usize).min(height - 1);
+        let is_there = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
+        let texel = row * width + column;
+        let is_inside = self.inside.get(texel).copied().unwrap_or(false);
+        (self.levels[0].texels()[texel], is_there && is_inside)
     }
 
     /// Columns and rows of the finest picture.

@@ -13,10 +13,10 @@ use toml::Spanned;
 
 use super::error::{SceneError, SceneProblem};
 use super::file::SceneFile;
-use super::settings::{Holes, InputSettings, Layout, PoseSpaceSettings, Provider, ReadingSettings, Scene};
-use crate::input::{FigureRule, PaperRule};
-use crate::pipeline::{ArtChoice, MeshOptions};
-use crate::render::ColourBlend;
+use super::settings::{FrameSize, Holes, InputSettings, Layout, PoseSpaceSettings, Provider, ReadingSettings, Scene};
+use crate::input::{FigureRule, PaperRule, PartRule};
+use crate::pipeline::{ArtChoice, CameraRule, MeshOptions};
+use crate::render::{ColourBlend, Sampling};
 use crate::weights::{PseudoPose, Radial, Range};
 
 /// The version of the format.
@@ -118,7 +118,7 @@ impl Reader<'_> {
         self.check_version(&written.version)?;
         let layer_names = self.layer_names(&written.layer)?;
         let input = self.input(&written)?;
-        let poses = self.poses(&written.pose, &layer_names, &input.reading)?;
+        let poses = self.poses(&written.pose, &layer_names, &input)?;
         let names: Vec<&str> = poses.iter().map(|p| p.name.as_str()).collect();
         self.check_drawn(written.reference.as_ref(), &written.landmark, &written.pose)?;
         let (landmarks, paths) = self.landmarks(&written.landmark, &names, &layer_names)?;
@@ -165,6 +165,22 @@ impl Reader<'_> {
                 &[("curves", ArtChoice::Curves), ("pixels", ArtChoice::Pixels)],
                 "'curves' or 'pixels'",
             )?,
+            sampling: self.choice(
+                &written.texture.sampling,
+                "[texture] sampling",
+                &Sampling::NAMED,
+                "'smooth' or 'nearest'",
+            )?,
+            camera: self.choice(
+                &written.animation.camera,
+                "[animation] camera",
+                &CameraRule::NAMED,
+                "'fit' or 'drawing'",
+            )?,
+            frame_size: match &written.animation.size {
+                Some(_) => FrameSize::Given,
+                None => FrameSize::Open,
+            },
             animation: self.animation(&written.animation, &poses)?,
             poses,
             pseudo_poses,
@@ -263,6 +279,29 @@ impl Reader<'_> {
         Ok(place.clone())
     }
 
+    /// Two whole numbers, columns and rows, from `least` on.
+    pub(super) fn whole_pair(&self, value: &Spanned<Vec<i64>>, key: &str, least: i64) -> Checked<[usize; 2]> {
+        /// More cells than pixels are of no use.
+        const MOST: i64 = 16_384;
+        let bad = |found: i64| {
+            self.fail(
+                value.span().start,
+                SceneProblem::BadNumber {
+                    key: key.to_owned(),
+                    value: found as f64,
+                    allowed: "two whole numbers [columns, rows]",
+                },
+            )
+        };
+        let [columns, rows] = value.get_ref()[..] else {
+            return Err(bad(value.get_ref().len() as i64));
+        };
+        match [columns, rows].into_iter().find(|side| !(least..=MOST).contains(side)) {
+            Some(side) => Err(bad(side)),
+            None => Ok([columns as usize, rows as usize]),
+        }
+    }
+
     fn mesh(&self, written: &SceneFile) -> Checked<MeshOptions> {
         let mut mesh = MeshOptions::default();
         mesh.simplify.tolerance = self.number(
@@ -300,6 +339,16 @@ impl Reader<'_> {
                 "[input]",
                 &ReadingSettings::default(),
             )?,
+            parts: self.choice(
+                &written.input.parts,
+                "[input] parts",
+                &PartRule::NAMED,
+                "'layers' or 'largest'",
+            )?,
+            cells: match &written.input.cells {
+                Some(cells) => Some(self.whole_pair(cells, "[input] cells", 1)?),
+                None => None,
+            },
         })
     }
 

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use super::SceneBuildError;
 use super::settings::{Holes, Scene};
-use crate::input::{BitmapOptions, HoleRule, InputError, SvgOptions, read_bitmap, read_svg};
+use crate::input::{BitmapOptions, HoleRule, InputError, SvgOptions, bitmap_size, read_bitmap, read_svg, svg_page_px};
+use crate::math::Point;
 use crate::pipeline::{DrawnPose, SvgSource};
 
 /// The drawing of one pose of a scene without layers, by its index: its own, or that of the pose that it is a copy of. `layer` is
@@ -33,10 +34,15 @@ pub(super) fn read_drawing(scene: &Scene, layer: Option<&str>, pose: usize) -> R
                 pixels_per_unit: None,
                 holes,
                 extent: said.extent,
+                parts: said.parts.clone(),
+                around: None,
             };
             let drawing = read_svg(&bytes, &options)?;
             let mut drawn = DrawnPose::new(drawing);
-            drawn.svg = Some(Arc::new(SvgSource { bytes, options }));
+            drawn.svg = Some(Arc::new(SvgSource {
+                bytes: bytes.into(),
+                options,
+            }));
             drawn
         } else {
             let options = BitmapOptions {
@@ -45,6 +51,8 @@ pub(super) fn read_drawing(scene: &Scene, layer: Option<&str>, pose: usize) -> R
                 paper: said.reading.paper,
                 threshold: said.reading.threshold,
                 holes,
+                parts: said.parts.clone(),
+                picture: said.picture,
             };
             DrawnPose::new(read_bitmap(&bytes, &options)?)
         };
@@ -55,6 +63,36 @@ pub(super) fn read_drawing(scene: &Scene, layer: Option<&str>, pose: usize) -> R
         file: scene.file.clone(),
         line: said.line,
         layer: layer.map(str::to_owned),
+        pose: scene.poses[root].name.clone(),
+        drawing: said.file.clone(),
+        source: Box::new(source),
+    })
+}
+
+/// How large the page of a pose's drawing is, in pixels.
+///
+/// # Errors
+/// As [`read_drawing`].
+pub(super) fn canvas_px(scene: &Scene, pose: usize) -> Result<Point, SceneBuildError> {
+    let path = scene.source_path(pose)?;
+    let Some((root, said)) = scene.drawing_of(pose) else {
+        return Err(scene.without_drawing(pose).into());
+    };
+    let read = || {
+        let bytes = std::fs::read(&path).map_err(|source| InputError::Unreadable {
+            path: path.clone(),
+            source,
+        })?;
+        if is_svg(&path) {
+            svg_page_px(&bytes)
+        } else {
+            bitmap_size(&bytes, said.picture)
+        }
+    };
+    read().map_err(|source| SceneBuildError::Drawing {
+        file: scene.file.clone(),
+        line: said.line,
+        layer: None,
         pose: scene.poses[root].name.clone(),
         drawing: said.file.clone(),
         source: Box::new(source),

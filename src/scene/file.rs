@@ -42,6 +42,8 @@ pub(super) struct InputTable {
     pub(super) paper: Option<Spanned<String>>,
     pub(super) holes: Option<Spanned<String>>,
     pub(super) threshold: Option<Spanned<f64>>,
+    pub(super) parts: Option<Spanned<String>>,
+    pub(super) cells: Option<Spanned<Vec<i64>>>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -86,6 +88,7 @@ pub(super) struct TextureTable {
     pub(super) sharpness: Option<Spanned<f64>>,
     pub(super) blending: Option<Spanned<String>>,
     pub(super) drawing: Option<Spanned<String>>,
+    pub(super) sampling: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -99,6 +102,10 @@ pub(super) struct PoseTable {
     pub(super) gap: Option<Spanned<f64>>,
     pub(super) paper: Option<Spanned<String>>,
     pub(super) threshold: Option<Spanned<f64>>,
+    pub(super) keep: Option<Spanned<Vec<Value>>>,
+    pub(super) drop: Option<Spanned<Vec<Value>>>,
+    pub(super) frame: Option<Spanned<i64>>,
+    pub(super) cell: Option<Spanned<Vec<i64>>>,
     pub(super) at: Option<Spanned<Vec<f64>>>,
     pub(super) mirror: Option<bool>,
     pub(super) turns: Option<Spanned<i64>>,
@@ -156,6 +163,7 @@ pub(super) struct AnimationTable {
     pub(super) looped: Option<bool>,
     pub(super) size: Option<Spanned<Vec<i64>>>,
     pub(super) background: Option<Spanned<String>>,
+    pub(super) camera: Option<Spanned<String>>,
     pub(super) keys: Option<Spanned<Vec<Spanned<KeyTable>>>>,
 }
 

@@ -13,6 +13,7 @@ mod error;
 mod file;
 mod layers;
 mod new;
+mod newcomer;
 mod settings;
 mod shape;
 mod shape_model;
@@ -24,8 +25,9 @@ pub use build_error::SceneBuildError;
 pub use error::{SceneError, SceneProblem};
 pub use layers::{LayerAnchor, SceneLayer};
 pub use new::{NewPose, scene_text};
+pub use newcomer::Newcomer;
 pub use settings::{
-    DeformedSource, DrawnSource, Holes, InputSettings, Layout, PoseSource, PoseSpaceSettings, Provider,
+    DeformedSource, DrawnSource, FrameSize, Holes, InputSettings, Layout, PoseSource, PoseSpaceSettings, Provider,
     ReadingSettings, Scene, SceneLandmark, ScenePath, ScenePose,
 };
 pub use shape::{

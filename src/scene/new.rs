@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::input::PictureChoice;
+
 /// A drawing for a new scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewPose {
@@ -9,6 +11,8 @@ pub struct NewPose {
     pub name: String,
     /// Its source, relative to the scene file.
     pub source: String,
+    /// Which picture of its source it is.
+    pub picture: PictureChoice,
     /// Its place in the pose space; all poses of a scene have one, or none.
     pub at: Option<[f64; 2]>,
 }
@@ -21,6 +25,13 @@ pub fn scene_text(poses: &[NewPose]) -> String {
          # `at` is a pose's place: poses that are alike lie near one another. Move them as you like, x and y meaning whatever\n\
          # suits the character. Without any `at` the poses are laid out anew, from the drawings, whenever they are used.\n",
     );
+    let grid = poses.iter().find_map(|pose| match pose.picture {
+        PictureChoice::Cell { of, .. } => Some(of),
+        PictureChoice::Only | PictureChoice::Frame(_) => None,
+    });
+    if let Some([columns, rows]) = grid {
+        let _ = write!(text, "\n[input]\ncells = [{columns}, {rows}]\n");
+    }
     for pose in poses {
         // A TOML value knows its own quoting.
         let quoted = |s: &str| toml::Value::String(s.to_owned()).to_string();
@@ -30,6 +41,15 @@ pub fn scene_text(poses: &[NewPose]) -> String {
             quoted(&pose.name),
             quoted(&pose.source)
         );
+        match pose.picture {
+            PictureChoice::Only => {}
+            PictureChoice::Frame(frame) => {
+                let _ = writeln!(text, "frame = {frame}");
+            }
+            PictureChoice::Cell { at: [column, row], .. } => {
+                let _ = writeln!(text, "cell = [{column}, {row}]");
+            }
+        }
         text.push_str(&match pose.at {
             Some([x, y]) => format!("at = [{x:?}, {y:?}]\n"),
             None => "# at = [0.0, 0.0]\n".to_owned(),

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use super::SceneLayer;
 use crate::animation::Animation;
 use crate::blend::BlendOptions;
-use crate::input::{Extent, FigureRule, PaperRule};
+use crate::input::{Extent, FigureRule, PaperRule, PartOptions, PartRule, PictureChoice};
 use crate::math::Point;
-use crate::pipeline::{ArtChoice, DeformedCopy, Facing, MeshOptions};
-use crate::render::ColourBlend;
+use crate::pipeline::{ArtChoice, CameraRule, DeformedCopy, Facing, MeshOptions};
+use crate::render::{ColourBlend, Sampling};
 use crate::weights::{PseudoPose, Radial, Range};
 
 /// A scene: everything the artist says about a character.
@@ -37,6 +37,12 @@ pub struct Scene {
     pub colour_blend: ColourBlend,
     /// Whether vector drawings are drawn as curves.
     pub art: ArtChoice,
+    /// How colours are taken from pictures.
+    pub sampling: Sampling,
+    /// What frames show.
+    pub camera: CameraRule,
+    /// Where the size of frames comes from.
+    pub frame_size: FrameSize,
     /// The poses, at least one.
     pub poses: Vec<ScenePose>,
     /// Blends that are wanted elsewhere than they are (SBE 4).
@@ -49,6 +55,17 @@ pub struct Scene {
     pub layers: Vec<SceneLayer>,
     /// What is played.
     pub animation: Animation,
+}
+
+/// Where the size of frames comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FrameSize {
+    /// The animation has it.
+    #[default]
+    Given,
+    /// The file gives none: it is the animation's default, or with [`CameraRule::Drawing`] that of the drawings' canvas, which is known
+    /// when they are read ([`Scene::with_automatic_places`]).
+    Open,
 }
 
 /// Whether holes of the drawings are holes of the shape.
@@ -70,6 +87,10 @@ pub struct InputSettings {
     pub holes: Holes,
     /// How the drawings of poses that do not say it themselves are read.
     pub reading: ReadingSettings,
+    /// What becomes of loose parts.
+    pub parts: PartRule,
+    /// How many columns and rows of cells sheets have, where poses name a cell.
+    pub cells: Option<[usize; 2]>,
 }
 
 /// How a drawing is read.
@@ -91,6 +112,8 @@ impl Default for InputSettings {
         Self {
             holes: Holes::Match,
             reading: ReadingSettings::default(),
+            parts: PartRule::default(),
+            cells: None,
         }
     }
 }
@@ -209,6 +232,10 @@ pub struct DrawnSource {
     pub extent: Extent,
     /// How it is read.
     pub reading: ReadingSettings,
+    /// Which of its loose parts belong to it.
+    pub parts: PartOptions,
+    /// Which picture of a bitmap's file it is.
+    pub picture: PictureChoice,
 }
 
 /// A copy of another pose, deformed.

@@ -5,16 +5,43 @@
 
 use rayon::prelude::*;
 
-use super::drawings::read_drawing;
-use super::settings::{Holes, Layout, PoseSource, Provider, Scene};
+use super::drawings::{canvas_px, read_drawing};
+use super::settings::{FrameSize, Holes, Layout, PoseSource, Provider, Scene};
 use super::{SceneBuildError, SceneLayer};
 use crate::blend::BlendOptions;
+use crate::math::Point;
+use crate::math::point::bounding_box;
 use crate::pipeline::{
-    Attachment, Character, CharacterSpec, DrawnPose, EditableWeights, LandmarkSpec, LayerSpec, PathSpec, Places,
-    PoseShape, PoseSpec, SpaceSpec, TextureSpec, UnsharedHoles, WeightOptions, automatic_places, editable_weights,
-    map_layer,
+    Attachment, CameraRule, Character, CharacterSpec, DrawnPose, EditableWeights, Facing, LandmarkSpec, LayerParts,
+    LayerRole, LayerSpec, PathSpec, Places, PoseShape, PoseSpec, SpaceSpec, TextureSpec, UnsharedHoles, WeightOptions,
+    automatic_places, editable_weights, map_layer,
 };
 use crate::weights::{BiharmonicOptions, Range, RbfOptions};
+
+/// Layers of a pose that is reflected are reflected about one line, the middle of all of them.
+fn reflect_together(layers: &mut [LayerSpec]) {
+    let mut middles: Vec<(String, Point, Point)> = Vec::new();
+    for pose in layers.iter().flat_map(|layer| &layer.poses) {
+        let PoseShape::Drawn(drawn) = &pose.shape else { continue };
+        let outline = drawn.drawing.outline.outer();
+        let Some((low, high)) = bounding_box(outline.points()).filter(|_| drawn.facing == Facing::Mirrored) else {
+            continue;
+        };
+        match middles.iter_mut().find(|(name, ..)| *name == pose.name) {
+            Some((_, all_low, all_high)) => (*all_low, *all_high) = (all_low.inf(&low), all_high.sup(&high)),
+            None => middles.push((pose.name.clone(), low, high)),
+        }
+    }
+    for pose in layers.iter_mut().flat_map(|layer| &mut layer.poses) {
+        let found = middles.iter().find(|(name, ..)| *name == pose.name);
+        if let (PoseShape::Drawn(drawn), Some((_, low, high))) = (&mut pose.shape, found) {
+            drawn.axis = Some(low.x + high.x);
+        }
+    }
+}
+
+/// The largest side of a frame, in pixels.
+const LARGEST_FRAME: f64 = 16_384.0;
 
 /// What reads a drawing: of a pose, by its index, of a scene without layers, which is called so where it is one of several.
 pub(super) type ReadDrawing<'a> = dyn Fn(&Scene, Option<&str>, usize) -> Result<DrawnPose, SceneBuildError> + Sync + 'a;
@@ -25,7 +52,7 @@ impl Scene {
     /// # Errors
     /// [`SceneBuildError`] for the first drawing, in the scene's order, that cannot be used.
     pub fn spec(&self) -> Result<CharacterSpec, SceneBuildError> {
-        self.spec_with(&read_drawing)
+        Ok(self.arranged(self.spec_with(&read_drawing)?))
     }
 
     /// The specification of one layer, or of the whole of a scene without layers. Its drawings are read, in parallel.
@@ -64,22 +91,56 @@ impl Scene {
         editable_weights(&self.names(), &self.places(), &options).map_err(|error| self.refusal(error))
     }
 
-    /// The scene with a place for every pose. If the file gives none, its drawings are read and mapped for that, which takes as
+    /// The scene with frames as large as its drawings' canvas, if they are to be: pixel for pixel of bitmaps, of SVG files as large as
+    /// a browser shows them.
+    fn with_canvas_size(mut self) -> Result<Self, SceneBuildError> {
+        if self.frame_size == FrameSize::Given || self.camera == CameraRule::Fit {
+            return Ok(self);
+        }
+        let whole: Vec<&Self> = if self.layers.is_empty() {
+            vec![&self]
+        } else {
+            self.layers.iter().map(|layer| &layer.scene).collect()
+        };
+        let drawn: Vec<(&Self, usize)> = whole
+            .into_iter()
+            .flat_map(|own| own.drawn_poses().into_iter().map(move |pose| (own, pose)))
+            .collect();
+        let sizes: Vec<Result<Point, SceneBuildError>> =
+            drawn.into_par_iter().map(|(own, pose)| canvas_px(own, pose)).collect();
+        let mut largest = Point::repeat(1.0);
+        for size in sizes {
+            largest = largest.sup(&size?);
+        }
+        self.animation.size = [largest.x, largest.y].map(|side| side.round().min(LARGEST_FRAME) as u32);
+        self.frame_size = FrameSize::Given;
+        Ok(self)
+    }
+
+    /// The scene with a place for every pose, and frames as large as its drawings' canvas if the file gives no size for
+    /// `camera = "drawing"`. If the file gives none, its drawings are read and mapped for that, which takes as
     /// long as [`map_layer`]; of a scene with layers, those of its first layer that all poses have.
     ///
     /// # Errors
     /// [`SceneBuildError`] if the drawings have to be mapped and cannot be.
     pub fn with_automatic_places(self) -> Result<Self, SceneBuildError> {
-        if self.layout == Layout::Given {
-            return Ok(self);
+        let sized = self.with_canvas_size()?;
+        if sized.layout == Layout::Given {
+            return Ok(sized);
         }
+        sized.laid_out_by_drawings()
+    }
+
+    fn laid_out_by_drawings(self) -> Result<Self, SceneBuildError> {
         let has_all = |layer: &SceneLayer| layer.poses.len() == self.poses.len();
         let layer = match self.layers.iter().position(has_all) {
             Some(layer) => layer,
             None if self.layers.is_empty() => 0,
             None => return Err(self.refusal(crate::pipeline::PipelineError::NoCommonLayer)),
         };
-        let (mapping, _) = map_layer(&self.layer_spec(layer)?).map_err(|error| self.layer_refusal(layer, error))?;
+        let mut parts = LayerParts::of(&self.layer_spec(layer)?, &[]);
+        let largest = parts.layers.swap_remove(parts.largest);
+        let (mapping, _) = map_layer(&largest).map_err(|error| self.layer_refusal(layer, error))?;
         Ok(self.laid_out(&automatic_places(&mapping)))
     }
 
@@ -100,7 +161,7 @@ impl Scene {
         self.poses.iter().map(|pose| pose.at.clone()).collect()
     }
 
-    /// The specification with drawings that `read` gives.
+    /// The specification with drawings that `read` gives, as they are.
     pub(super) fn spec_with(&self, read: &ReadDrawing<'_>) -> Result<CharacterSpec, SceneBuildError> {
         let layers: Vec<Result<LayerSpec, SceneBuildError>> = (0..self.layers.len().max(1))
             .into_par_iter()
@@ -111,8 +172,12 @@ impl Scene {
         } else {
             self.poses.iter().map(|pose| pose.draw_order.clone()).collect()
         };
+        let mut layers = layers.into_iter().collect::<Result<Vec<LayerSpec>, _>>()?;
+        if !self.layers.is_empty() {
+            reflect_together(&mut layers);
+        }
         Ok(CharacterSpec {
-            layers: layers.into_iter().collect::<Result<_, _>>()?,
+            layers,
             draw_orders,
             space: SpaceSpec {
                 poses: self.names(),
@@ -126,8 +191,21 @@ impl Scene {
                 sharpness: self.texture_sharpness,
                 blending: self.colour_blend,
                 art: self.art,
+                sampling: self.sampling,
             },
+            camera: CameraRule::Fit,
+            notes: Vec::new(),
         })
+    }
+
+    /// The specification of the scene's character from its drawings as they were read: loose parts are layers, and everything lies where
+    /// the camera wants it.
+    pub(super) fn arranged(&self, read: CharacterSpec) -> CharacterSpec {
+        let spec = read.with_loose_parts();
+        match self.camera {
+            CameraRule::Fit => spec,
+            CameraRule::Drawing => spec.on_canvas(),
+        }
     }
 
     fn layer_with(&self, layer: usize, read: &ReadDrawing<'_>) -> Result<LayerSpec, SceneBuildError> {
@@ -183,6 +261,7 @@ impl Scene {
                 Holes::Keep => UnsharedHoles::Refuse,
                 Holes::Match | Holes::Fill => UnsharedHoles::Cover,
             },
+            role: LayerRole::Body,
         })
     }
 

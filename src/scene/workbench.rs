@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::drawings::read_drawing;
 use super::settings::{DrawnSource, Scene};
 use super::{Layout, SceneBuildError};
-use crate::pipeline::{Build, Character, DrawnPose, EditableWeights, LayerSpec};
+use crate::pipeline::{Build, Character, CharacterSpec, DrawnPose, EditableWeights, LayerSpec};
 use crate::render::Camera;
 
 /// Whether the drawings' files are as they were.
@@ -27,6 +27,8 @@ pub enum DrawingFiles {
 pub struct Workbench {
     /// Laid out.
     scene: Scene,
+    /// Its drawings as they were read, before loose parts became layers.
+    read: Arc<CharacterSpec>,
     build: Build,
     camera: Camera,
 }
@@ -37,11 +39,17 @@ impl Workbench {
     /// # Errors
     /// [`SceneBuildError`] from any stage.
     pub fn new(scene: &Scene) -> Result<Self, SceneBuildError> {
-        let made = Build::new(&scene.spec()?);
+        let read = scene.spec_with(&read_drawing)?;
+        let made = Build::new(&scene.arranged(read.clone()));
         let build = made.map_err(|error| scene.refusal(error))?;
         let scene = placed(scene, &build);
         let camera = camera(&scene, &build)?;
-        Ok(Self { scene, build, camera })
+        Ok(Self {
+            scene,
+            read: Arc::new(read),
+            build,
+            camera,
+        })
     }
 
     /// The workbench of an edited scene.
@@ -49,16 +57,18 @@ impl Workbench {
     /// # Errors
     /// As [`Self::new`]; this workbench stays as it is.
     pub fn edited(&self, scene: &Scene, files: DrawingFiles) -> Result<Self, SceneBuildError> {
-        let spec = match files {
-            DrawingFiles::Reread => scene.spec()?,
+        let read = match files {
+            DrawingFiles::Reread => scene.spec_with(&read_drawing)?,
             DrawingFiles::Unchanged => scene.spec_with(&|own: &Scene, layer: Option<&str>, pose: usize| {
                 let kept = self.kept(own, layer, pose);
                 kept.map_or_else(|| read_drawing(own, layer, pose), Ok)
             })?,
         };
+        let spec = scene.arranged(read.clone());
         let build = self.build.update(&spec).map_err(|error| scene.refusal(error))?;
         Ok(Self {
             scene: placed(scene, &build),
+            read: Arc::new(read),
             build,
             camera: self.camera,
         })
@@ -80,6 +90,7 @@ impl Workbench {
     pub fn reweighted(&self, scene: &Scene, weights: Arc<EditableWeights>) -> Self {
         Self {
             scene: scene.clone(),
+            read: Arc::clone(&self.read),
             build: self.build.reweighted(scene.places(), weights),
             camera: self.camera,
         }
@@ -103,7 +114,7 @@ impl Workbench {
             })?;
             spec.drawn().nth(place).cloned()
         };
-        let layers = &self.build.spec().layers;
+        let layers = &self.read.layers;
         // Other layers are not asked: a file that two of them share is read by each in its own way.
         let index = match layer {
             Some(name) => self.scene.layers.iter().position(|own| own.name == name)?,

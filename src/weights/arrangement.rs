@@ -63,6 +63,102 @@ pub fn arrange(distances: &[Vec<f64>]) -> Vec<[f64; 2]> {
     places.iter().map(|p| [tidy(p.x), tidy(p.y)]).collect()
 }
 
+/// A place for one more among given places, all of one dimension: its distances to them are as nearly as can be in proportion to `own`, by
+/// the proportion of `places` to `among`, which has a distance for each pair of them. A thousandth of what they span, rounded to.
+///
+/// It lies no nearer to another than a twentieth of what they span. One more than one lies at distance 1 along the first axis, the
+/// first of all at the origin of the plane.
+#[must_use]
+pub fn place_among(places: &[Vec<f64>], among: &[Vec<f64>], own: &[f64]) -> Vec<f64> {
+    /// Steps of the majorisation, which converges linearly.
+    const STEPS: usize = 300;
+    /// Share of the span that poses stay apart.
+    const APART: f64 = 0.05;
+    let Some(first) = places.first() else {
+        return vec![0.0; 2];
+    };
+    let gap = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+    let span = places
+        .iter()
+        .flat_map(|a| places.iter().map(|b| gap(a, b)))
+        .fold(0.0, f64::max);
+    if span == 0.0 {
+        let mut beside = first.clone();
+        if let Some(x) = beside.first_mut() {
+            *x += 1.0;
+        }
+        return beside;
+    }
+    // The proportion of all distances between the places to those that they stand for.
+    let known: f64 = among.iter().flatten().filter(|d| d.is_finite()).sum();
+    let spread: f64 = places.iter().flat_map(|a| places.iter().map(|b| gap(a, b))).sum();
+    let scale = if known > 0.0 { spread / known } else { 1.0 };
+    let wanted: Vec<f64> = own
+        .iter()
+        .map(|d| {
+            if d.is_finite() {
+                (d * scale).max(APART * span)
+            } else {
+                span
+            }
+        })
+        .collect();
+    let stress = |place: &[f64]| -> f64 {
+        let errors = places
+            .iter()
+            .zip(&wanted)
+            .map(|(other, wanted)| gap(place, other) - wanted);
+        errors.map(|error| error * error).sum()
+    };
+    // Places on a line have no way out of it, so the search begins beside each of them, in every direction.
+    let begun = places.iter().zip(&wanted).flat_map(|(place, wanted)| {
+        (0..2 * place.len()).map(move |k| {
+            let mut start = place.clone();
+            start[k / 2] += if k % 2 == 0 { *wanted } else { -*wanted };
+            start
+        })
+    });
+    let settled = begun.map(|mut place| {
+        for _ in 0..STEPS {
+            let mut next = vec![0.0; place.len()];
+            for (other, wanted) in places.iter().zip(&wanted) {
+                let distance = gap(&place, other).max(f64::MIN_POSITIVE);
+                for ((next, at), other) in next.iter_mut().zip(&place).zip(other) {
+                    *next += (other + (at - other) * wanted / distance) / places.len() as f64;
+                }
+            }
+            place = next;
+        }
+        place
+    });
+    // Nearly equal ones go to the first, whatever the rounding.
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    for place in settled {
+        let own = stress(&place);
+        if best.as_ref().is_none_or(|(least, _)| own < least - 1e-9 * span * span) {
+            best = Some((own, place));
+        }
+    }
+    let mut place = best.map_or_else(|| first.clone(), |(_, place)| place);
+    if let Some(near) = places.iter().find(|other| gap(&place, other) < APART * span) {
+        let away = gap(&place, near);
+        for (k, (at, other)) in place.iter_mut().zip(near).enumerate() {
+            let direction = if away > 0.0 {
+                (*at - other) / away
+            } else {
+                f64::from(u8::from(k == 0))
+            };
+            *at = other + direction * APART * span;
+        }
+    }
+    let step = span / 1000.0;
+    let decimals = 10f64.powf((-step.log10()).ceil().clamp(0.0, 12.0));
+    place
+        .into_iter()
+        .map(|v| (v * decimals).round() / decimals + 0.0)
+        .collect()
+}
+
 /// Symmetric distances of at least [`FLOOR`]; all 1 if none is positive.
 fn floored(distances: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let count = distances.len();
@@ -247,6 +343,22 @@ fn normalise(places: &mut [Point]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_more_lies_where_its_distances_say() {
+        let places = [[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]].map(Vec::from);
+        let among = [[0.0, 40.0, 30.0], [40.0, 0.0, 50.0], [30.0, 50.0, 0.0]].map(Vec::from);
+        let found = place_among(&places, &among, &[50.0, 30.0, 40.0]);
+        assert!(
+            (found[0] - 4.0).abs() < 0.02 && (found[1] - 3.0).abs() < 0.02,
+            "{found:?}"
+        );
+        // A copy of one of them keeps a little away from it, and one beside one alone is a step aside.
+        let copy = place_among(&places, &among, &[0.0, 40.0, 30.0]);
+        assert!(copy.iter().map(|v| v * v).sum::<f64>().sqrt() > 0.2, "{copy:?}");
+        assert_eq!(place_among(&[vec![2.0, 5.0]], &[vec![0.0]], &[9.0]), [3.0, 5.0]);
+    }
+
     use proptest::prelude::*;
     use std::f64::consts::TAU;
 

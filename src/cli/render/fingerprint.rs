@@ -7,6 +7,7 @@
 use anyhow::Context as _;
 use inbetween::animation::Background;
 use inbetween::export::Label;
+use inbetween::pipeline::CameraRule;
 use sha2::{Digest as _, Sha256};
 
 use super::job::Job;
@@ -32,6 +33,10 @@ impl Fingerprint {
         match animation.background {
             Background::Transparent => fingerprint.add(b"transparent"),
             Background::Colour(colour) => fingerprint.add(&colour),
+        }
+        // What the frames of other scenes carry is the same as ever.
+        if scene.camera == CameraRule::Drawing {
+            fingerprint.add(b"drawing");
         }
         fingerprint.add(&job.supersample.to_le_bytes());
         Ok(fingerprint)

@@ -16,12 +16,13 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use inbetween::animation::Background;
+use inbetween::pipeline::CameraRule;
 use inbetween::scene::Scene;
 
 use self::format::Format;
 use self::job::Job;
 use super::progress::ProgressKind;
-use super::values::{FrameNumbers, Grid, background, frame_rate, pixels, supersample, thread_count};
+use super::values::{FrameNumbers, Grid, background, camera, frame_rate, pixels, supersample, thread_count};
 use super::{Failure, Verbosity};
 
 /// Render the animation of a scene
@@ -57,6 +58,9 @@ pub(crate) struct Arguments {
     /// Frames a second; the scene's otherwise
     #[arg(long, value_parser = frame_rate)]
     fps: Option<f64>,
+    /// What frames show: fit (all poses and the whole animation) or drawing (the drawings' own canvas); the scene's otherwise
+    #[arg(long, value_name = "RULE", value_parser = camera)]
+    camera: Option<CameraRule>,
     /// What is behind the character: transparent, white, black, #rrggbb or #rrggbbaa; the scene's otherwise
     #[arg(long, value_name = "COLOUR", value_parser = background)]
     background: Option<Background>,
@@ -106,7 +110,9 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
             "--resume works with a folder of files only; a single file is written whole, so render it again".to_owned(),
         ));
     }
-    let mut scene = Scene::open(&arguments.scene)?.with_automatic_places()?;
+    let mut scene = Scene::open(&arguments.scene)?;
+    scene.camera = arguments.camera.unwrap_or(scene.camera);
+    let mut scene = scene.with_automatic_places()?;
     if let Some(fps) = arguments.fps {
         scene.animation.fps = fps;
     }

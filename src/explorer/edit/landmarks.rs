@@ -47,7 +47,8 @@ pub(super) fn add(
     let name = name.map_or_else(|| free_name(&names(document, "landmark"), "landmark"), str::to_owned);
     let mut table = Table::new();
     table.insert("name", name.as_str().into());
-    if let Some(layer) = layer {
+    // A loose part that is a layer by itself has no table: landmarks go to the part that they lie on.
+    if let Some(layer) = layer.filter(|_| !tables(document, "layer").is_empty()) {
         table.insert("layer", layer.into());
     }
     if is_path {

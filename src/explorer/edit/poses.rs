@@ -53,7 +53,12 @@ fn handles_value(context: &Context<'_>, of: &str, handles: &[HandleText]) -> Val
     for handle in handles {
         let place = |place: [f64; 2]| point_value(context.as_written(handle.layer.as_deref(), of, Point::from(place)));
         let mut table = inline([("from", place(handle.from)), ("to", place(handle.to))]);
-        if let Some(layer) = &handle.layer {
+        // Handles of a scene without layers go to the loose part that they lie on.
+        if let Some(layer) = handle
+            .layer
+            .as_ref()
+            .filter(|_| context.scene.is_none_or(|scene| !scene.layers.is_empty()))
+        {
             table.insert("layer", layer.as_str().into());
         }
         array.push(table);

@@ -173,6 +173,18 @@ fn refusals_name_their_cause() {
 }
 
 #[test]
+fn a_scan_as_tiff_is_read_and_one_that_is_cut_off_is_refused() {
+    let image = painted(48, 48, true, disc(24.0, 24.0, 15.0));
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut bytes, image::ImageFormat::Tiff).expect("a TIFF");
+    let bytes = bytes.into_inner();
+    let options = BitmapOptions::default();
+    let drawing = read_bitmap(&bytes, &options).expect("a drawing");
+    assert_eq!(drawing.outline, read(&image).outline);
+    assert!(read_bitmap(&bytes[..bytes.len() / 2], &options).is_err());
+}
+
+#[test]
 fn a_claim_of_enormous_size_is_refused_from_the_header() {
     let mut bytes = png(&painted(8, 8, false, disc(4.0, 4.0, 3.0)));
     bytes[16..20].copy_from_slice(&60_000_u32.to_be_bytes());

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{CharacterSpec, DrawnPose, LayerSpec, PoseShape};
-use crate::blend::Reference;
+use crate::blend::{Anchor, Reference, Region, SoftAnchor};
 
 impl CharacterSpec {
     /// The places of a layer's poses in the pose space; poses that the space lacks are left out.
@@ -20,6 +20,10 @@ impl CharacterSpec {
         let original = |pose: usize| {
             let in_layer = |(layer, poses): (&LayerSpec, &Vec<usize>)| {
                 let here = poses.iter().position(|&p| p == pose)?;
+                // What vanishes in a pose does not say whose drawing is seen there.
+                if matches!(layer.poses[here].shape, PoseShape::Shrunk(_)) {
+                    return None;
+                }
                 poses.get(layer.originals()[here]).copied()
             };
             self.layers.iter().zip(&poses).find_map(in_layer).unwrap_or(pose)
@@ -55,7 +59,7 @@ impl LayerSpec {
     pub fn drawn(&self) -> impl Iterator<Item = &DrawnPose> {
         self.poses.iter().filter_map(|pose| match &pose.shape {
             PoseShape::Drawn(drawn) => Some(drawn),
-            PoseShape::Deformed(_) => None,
+            PoseShape::Deformed(_) | PoseShape::Shrunk(_) => None,
         })
     }
 
@@ -69,6 +73,7 @@ impl LayerSpec {
             match &self.poses.get(at)?.shape {
                 PoseShape::Drawn(drawing) => return Some((at, drawing)),
                 PoseShape::Deformed(copy) => at = copy.of,
+                PoseShape::Shrunk(copy) => at = copy.of,
             }
         }
         None
@@ -107,6 +112,47 @@ impl LayerSpec {
             path.at = kept.iter().map(|&k| whole.at[k].clone()).collect();
         }
         layer
+    }
+
+    /// For each pose whether it lacks the layer, which is shrunk to a point there.
+    #[must_use]
+    pub fn vanishing(&self) -> Vec<bool> {
+        let shapes = self.poses.iter().map(|pose| &pose.shape);
+        shapes.map(|shape| matches!(shape, PoseShape::Shrunk(_))).collect()
+    }
+
+    /// The layer with only the landmarks `kept`, by index, in this order, and the lines `paths`; anchors and regions that are left
+    /// without their landmark go with it.
+    #[must_use]
+    pub(in crate::pipeline) fn with_landmarks(mut self, kept: &[usize], paths: &[usize]) -> Self {
+        let place = |index: usize| kept.iter().position(|&k| k == index);
+        self.landmarks = kept.iter().map(|&k| self.landmarks[k].clone()).collect();
+        self.paths = paths.iter().map(|&k| self.paths[k].clone()).collect();
+        self.blend.anchor = match &self.blend.anchor {
+            Anchor::Centroid => Anchor::Centroid,
+            Anchor::Point(landmark) => place(*landmark).map_or(Anchor::Centroid, Anchor::Point),
+            Anchor::Soft(list) => {
+                let own: Vec<_> = list
+                    .iter()
+                    .filter_map(|soft| {
+                        let point = place(soft.point)?;
+                        Some(SoftAnchor { point, ..*soft })
+                    })
+                    .collect();
+                if own.is_empty() {
+                    Anchor::Centroid
+                } else {
+                    Anchor::Soft(own)
+                }
+            }
+        };
+        self.blend.regions = (self.blend.regions.iter())
+            .filter_map(|region| {
+                let point = place(region.point)?;
+                Some(Region { point, ..*region })
+            })
+            .collect();
+        self
     }
 
     /// Whether both have the same drawings, used in the same way.

@@ -164,18 +164,20 @@ impl LayerSpec {
             });
         }
         for (index, pose) in self.poses.iter().enumerate() {
-            let PoseShape::Deformed(copy) = &pose.shape else {
-                continue;
+            let (of, handles) = match &pose.shape {
+                PoseShape::Drawn(_) => continue,
+                PoseShape::Deformed(copy) => (copy.of, copy.handles.as_slice()),
+                PoseShape::Shrunk(copy) => (copy.of, [].as_slice()),
             };
             if self.drawing_of(index).is_none() {
                 return Err(SpecError::BadCopy {
                     layer: name(),
                     pose: pose.name.clone(),
-                    is_circle: self.poses.len() > copy.of,
+                    is_circle: self.poses.len() > of,
                 });
             }
             let what = || format!("layer '{}': a handle of pose '{}'", self.name, pose.name);
-            check_points(what, copy.handles.iter().flat_map(|handle| [handle.from, handle.to]))?;
+            check_points(what, handles.iter().flat_map(|handle| [handle.from, handle.to]))?;
         }
         let names = self.landmarks.iter().map(|landmark| &landmark.name);
         check_names("landmark", names.chain(self.paths.iter().map(|path| &path.name)))?;
@@ -233,7 +235,7 @@ impl LayerSpec {
         check_count(&what(), at.len(), self.poses.len())?;
         for (at, pose) in at.iter().zip(&self.poses) {
             let Some(points) = at else { continue };
-            if matches!(pose.shape, PoseShape::Deformed(_)) {
+            if !matches!(pose.shape, PoseShape::Drawn(_)) {
                 return Err(SpecError::LandmarkOnCopy {
                     layer: self.name.clone(),
                     landmark: landmark.to_owned(),

@@ -98,7 +98,7 @@ impl Reader<'_> {
         Ok(points)
     }
 
-    fn point(&self, value: &Value, start: usize, key: &str) -> Checked<Point> {
+    pub(super) fn point(&self, value: &Value, start: usize, key: &str) -> Checked<Point> {
         let number = |v: &Value| match v {
             Value::Float(f) => Some(*f),
             Value::Integer(i) => Some(*i as f64),

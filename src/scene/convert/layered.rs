@@ -3,7 +3,7 @@
 use toml::{Spanned, Value};
 
 use super::{Checked, Reader};
-use crate::input::Extent;
+use crate::input::{Extent, PartOptions};
 use crate::pipeline::{DeformedCopy, Facing};
 use crate::scene::error::SceneProblem;
 use crate::scene::file::{LayerTable, PoseTable, SceneFile};
@@ -145,13 +145,6 @@ impl Reader<'_> {
                 self.handles_of(written, copy, layer, layers)?,
             )));
         }
-        if written.mirror == Some(true) {
-            return self.unsupported(
-                written.name.span().start,
-                &format!("`mirror = true` on pose '{name}' of a scene with layers"),
-                "turn the pose's drawings round before",
-            );
-        }
         let Some(source) = &written.source else {
             return Err(self.fail(
                 written.name.span().start,
@@ -193,8 +186,31 @@ impl Reader<'_> {
             },
             element,
             reading: self.reading_of(written, &scene.input.reading)?,
-            facing: Facing::AsDrawn,
+            parts: self.parts_of_layer(written, scene)?,
+            picture: self.picture_of(written, &scene.input)?,
+            facing: if written.mirror == Some(true) {
+                Facing::Mirrored
+            } else {
+                Facing::AsDrawn
+            },
         })))
+    }
+
+    /// Loose parts of a layer's drawing. Places of a pose would be on one layer's drawing or the other's.
+    fn parts_of_layer(&self, written: &PoseTable, scene: &Scene) -> Checked<PartOptions> {
+        match written.keep.as_ref().or(written.drop.as_ref()) {
+            Some(list) => Err(self.fail(
+                list.span().start,
+                SceneProblem::Format(format!(
+                    "pose '{}' has `keep` or `drop`, which do not go with layers; remove them, and what does not belong to a layer from its drawing",
+                    written.name.get_ref()
+                )),
+            )),
+            None => Ok(PartOptions {
+                rule: scene.input.parts,
+                ..PartOptions::default()
+            }),
+        }
     }
 
     /// The handles of a copy that are meant for one layer.

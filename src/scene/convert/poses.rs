@@ -6,11 +6,12 @@ use std::path::PathBuf;
 use toml::{Spanned, Value};
 
 use super::{Checked, Reader, WrittenReading};
-use crate::input::Extent;
+use crate::input::{Extent, PartOptions, PartRule, PictureChoice};
+use crate::math::Point;
 use crate::pipeline::Facing;
 use crate::scene::error::SceneProblem;
 use crate::scene::file::PoseTable;
-use crate::scene::settings::{DrawnSource, PoseSource, ReadingSettings, ScenePose};
+use crate::scene::settings::{DrawnSource, InputSettings, PoseSource, ReadingSettings, ScenePose};
 use crate::scene::source;
 
 /// The most whole turns that can be added to a pose.
@@ -21,7 +22,7 @@ impl Reader<'_> {
         &self,
         tables: &[Spanned<PoseTable>],
         layers: &[String],
-        reading: &ReadingSettings,
+        input: &InputSettings,
     ) -> Checked<Vec<ScenePose>> {
         if tables.is_empty() {
             return Err(self.fail(self.text.len(), SceneProblem::NoPose));
@@ -40,7 +41,7 @@ impl Reader<'_> {
         let names: Vec<String> = tables.iter().map(|t| t.get_ref().name.get_ref().clone()).collect();
         let mut poses: Vec<ScenePose> = Vec::new();
         for (index, table) in tables.iter().enumerate() {
-            let pose = self.pose(table, index, &names, layers, poses.first().map(|p| p.at.len()), reading)?;
+            let pose = self.pose(table, index, &names, layers, poses.first().map(|p| p.at.len()), input)?;
             let at = table.get_ref().name.span().start;
             if pose.name.is_empty() || poses.iter().any(|p| p.name == pose.name) {
                 return Err(self.fail(
@@ -74,14 +75,14 @@ impl Reader<'_> {
         names: &[String],
         layers: &[String],
         dimension: Option<usize>,
-        reading: &ReadingSettings,
+        input: &InputSettings,
     ) -> Checked<ScenePose> {
         let written = table.get_ref();
         let name = written.name.get_ref().clone();
         let source = match &written.deform_of {
             _ if !layers.is_empty() => PoseSource::Layered,
             Some(of) => PoseSource::Deformed(self.deformed(written, of, names)?),
-            None => PoseSource::Drawn(self.drawn(written, reading)?),
+            None => PoseSource::Drawn(self.drawn(written, input)?),
         };
         let at = match &written.at {
             Some(at) => self.place(at, &format!("`at` of pose '{name}'"), dimension)?,
@@ -118,7 +119,60 @@ impl Reader<'_> {
         self.reading(&keys, &format!("pose '{}':", written.name.get_ref()), usual)
     }
 
-    fn drawn(&self, written: &PoseTable, reading: &ReadingSettings) -> Checked<DrawnSource> {
+    /// Which loose parts belong to the drawing of a pose.
+    fn parts_of(&self, written: &PoseTable, rule: PartRule) -> Checked<PartOptions> {
+        let name = written.name.get_ref();
+        let places = |list: &Option<Spanned<Vec<Value>>>, key: &str| -> Checked<Vec<Point>> {
+            let Some(list) = list else { return Ok(Vec::new()) };
+            let (start, what) = (list.span().start, format!("each place of `{key}` of pose '{name}'"));
+            let places = list.get_ref().iter();
+            places.map(|place| self.point(place, start, &what)).collect()
+        };
+        Ok(PartOptions {
+            rule,
+            keep: places(&written.keep, "keep")?,
+            drop: places(&written.drop, "drop")?,
+        })
+    }
+
+    /// Which picture of its file the drawing of a pose is.
+    pub(super) fn picture_of(&self, written: &PoseTable, input: &InputSettings) -> Checked<PictureChoice> {
+        let name = written.name.get_ref();
+        match (&written.frame, &written.cell) {
+            (None, None) => Ok(PictureChoice::Only),
+            (Some(_), Some(cell)) => Err(self.fail(
+                cell.span().start,
+                SceneProblem::Format(format!(
+                    "pose '{name}' has `frame` and `cell`; a drawing is a frame of an animated file or a cell of a sheet, so remove one"
+                )),
+            )),
+            (Some(frame), None) => match usize::try_from(*frame.get_ref()) {
+                Ok(frame) => Ok(PictureChoice::Frame(frame)),
+                Err(_) => Err(self.fail(
+                    frame.span().start,
+                    SceneProblem::BadNumber {
+                        key: format!("`frame` of pose '{name}'"),
+                        value: *frame.get_ref() as f64,
+                        allowed: "a whole number, counted from 0",
+                    },
+                )),
+            },
+            (None, Some(cell)) => match input.cells {
+                Some(of) => Ok(PictureChoice::Cell {
+                    at: self.whole_pair(cell, &format!("`cell` of pose '{name}'"), 0)?,
+                    of,
+                }),
+                None => Err(self.fail(
+                    cell.span().start,
+                    SceneProblem::Format(format!(
+                        "pose '{name}' has `cell`, but nothing says how the sheet is divided; add `cells = [COLUMNS, ROWS]` under [input]"
+                    )),
+                )),
+            },
+        }
+    }
+
+    fn drawn(&self, written: &PoseTable, input: &InputSettings) -> Checked<DrawnSource> {
         let name = written.name.get_ref();
         if let Some(handles) = &written.handles {
             return Err(self.fail(
@@ -146,7 +200,9 @@ impl Reader<'_> {
             line: self.line(source.span().start),
             element,
             extent: Extent::Everything,
-            reading: self.reading_of(written, reading)?,
+            reading: self.reading_of(written, &input.reading)?,
+            parts: self.parts_of(written, input.parts)?,
+            picture: self.picture_of(written, input)?,
             facing: if written.mirror == Some(true) {
                 Facing::Mirrored
             } else {

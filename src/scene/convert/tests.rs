@@ -384,6 +384,7 @@ fn a_new_scene_reads_back() {
         [("a", "a.png"), ("say \"hi\"", "b c.png"), ("c", "c.svg")].map(|(name, source)| super::super::NewPose {
             name: name.to_owned(),
             source: source.to_owned(),
+            picture: crate::input::PictureChoice::Only,
             at: None,
         });
     let text = super::super::scene_text(&poses);

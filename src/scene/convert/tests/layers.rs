@@ -136,11 +136,6 @@ fn what_does_not_fit_is_refused_with_its_line_and_remedy() {
             20,
             "each layer of the pose once",
         ),
-        (
-            without("at = [0, 1]", "at = [0, 1]\nmirror = true"),
-            22,
-            "not supported yet",
-        ),
         (format!("{TWO}order = [\"arm\"]\n"), 10, "the scene has no [[layer]]"),
         (
             format!("{TWO}[[pose]]\nname = \"c\"\nsource = {{ body = \"c.svg\" }}\nat = [5, 5]\n"),

@@ -1,0 +1,66 @@
+//! The page that a drawing is on.
+
+use crate::math::Point;
+
+/// The rectangle of a drawing's file, in source units: all columns and rows of a bitmap, what a browser shows of an SVG file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Canvas {
+    /// Its upper left corner.
+    pub low: Point,
+    /// Its lower right corner.
+    pub high: Point,
+}
+
+/// Page sizes of SVG files come in single precision: what differs from a whole number by less than this share of itself is that number.
+const ROUNDING: f64 = 1e-5;
+
+impl Canvas {
+    /// The canvas of a bitmap of `width` x `height` pixels.
+    #[must_use]
+    pub fn of_pixels(width: usize, height: usize) -> Self {
+        Self {
+            low: Point::zeros(),
+            high: Point::new(width as f64, height as f64),
+        }
+    }
+
+    /// A page, its numbers freed of rounding.
+    pub(super) fn of_page(page: kurbo::Rect) -> Self {
+        let size = page.width().abs().max(page.height().abs());
+        let tidy = |v: f64| {
+            if (v - v.round()).abs() < ROUNDING * size {
+                v.round()
+            } else {
+                v
+            }
+        };
+        Self {
+            low: Point::new(tidy(page.x0), tidy(page.y0)),
+            high: Point::new(tidy(page.x1), tidy(page.y1)),
+        }
+    }
+
+    /// Its width and height.
+    #[must_use]
+    pub fn size(&self) -> Point {
+        self.high - self.low
+    }
+
+    /// The canvas moved by `shift`.
+    #[must_use]
+    pub fn moved(&self, shift: Point) -> Self {
+        Self {
+            low: self.low + shift,
+            high: self.high + shift,
+        }
+    }
+
+    /// The smallest canvas that has both in it.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        Self {
+            low: self.low.inf(&other.low),
+            high: self.high.sup(&other.high),
+        }
+    }
+}

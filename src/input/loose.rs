@@ -1,0 +1,181 @@
+//! Loose parts: which pieces of a drawing belong to it, and which of them is its body.
+//!
+//! A drawing's outline is that of its largest piece. What lies apart from it is dirt (a few pixels), or a loose part, which is handed on with
+//! an outline and paint of its own ([`LoosePart`]): whoever has all drawings can tell which parts they have in common.
+
+use super::{Art, InputError, InputNote, Picture};
+use crate::math::Point;
+use crate::outline::Outline;
+
+/// The most loose parts that are handed on, the largest of them.
+const MOST_LOOSE: usize = 64;
+
+/// What becomes of loose parts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PartRule {
+    /// They are handed on.
+    #[default]
+    Apart,
+    /// Only the largest piece is handed on, and those that are asked for; a note tells of the others.
+    Largest,
+}
+
+impl PartRule {
+    /// What each is called in scene files.
+    pub const NAMED: [(&'static str, Self); 2] = [("layers", Self::Apart), ("largest", Self::Largest)];
+}
+
+/// Which pieces belong to a drawing.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PartOptions {
+    /// What becomes of loose parts. Default: they are handed on.
+    pub rule: PartRule,
+    /// Places, in source units, of pieces that belong to it, however small. Default: none.
+    pub keep: Vec<Point>,
+    /// Places, in source units, of pieces that do not belong to it. Default: none.
+    pub drop: Vec<Point>,
+}
+
+/// A piece of a drawing that is in several.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoosePart {
+    /// Its shape, in source units.
+    pub outline: Outline,
+    /// Its pixels; `None` for those of the drawing itself.
+    pub picture: Option<Picture>,
+    /// Its curves, if the drawing has any.
+    pub art: Option<Art>,
+    /// Whether it was asked for.
+    pub is_kept: bool,
+}
+
+/// A piece before it is an outline.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Piece {
+    pub(super) area: f64,
+    pub(super) centroid: Point,
+}
+
+/// The pieces that are used, by index.
+#[derive(Debug, PartialEq)]
+pub(super) struct Chosen {
+    pub(super) largest: usize,
+    /// All others that are handed on, with whether they were asked for, in the order of the pieces.
+    pub(super) loose: Vec<(usize, bool)>,
+    /// Those that do not belong to the drawing.
+    pub(super) dropped: Vec<usize>,
+}
+
+/// Chooses among the pieces of a drawing. `dirt` is the area below which a piece of a drawing whose largest has the given area is dirt;
+/// `at` says which piece a place means. `None` where there is no piece.
+pub(super) fn choose(
+    pieces: &[Piece],
+    options: &PartOptions,
+    dirt: impl Fn(f64) -> f64,
+    at: impl Fn(Point) -> Option<usize>,
+) -> Result<Option<Chosen>, InputError> {
+    let found = |places: &[Point]| -> Result<Vec<usize>, InputError> {
+        let piece = |place: &Point| at(*place).ok_or(InputError::NoPartThere { x: place.x, y: place.y });
+        places.iter().map(piece).collect()
+    };
+    let (kept, dropped) = (found(&options.keep)?, found(&options.drop)?);
+    let is_left = |piece: &usize| !dropped.contains(piece);
+    let by_area = |a: &usize, b: &usize| pieces[*a].area.total_cmp(&pieces[*b].area).then(b.cmp(a));
+    let Some(largest) = (0..pieces.len()).filter(is_left).max_by(by_area) else {
+        return match pieces.is_empty() {
+            true => Ok(None),
+            false => Err(InputError::AllDropped),
+        };
+    };
+    let least = dirt(pieces[largest].area);
+    let is_part = |piece: &usize| options.rule == PartRule::Apart && pieces[*piece].area >= least;
+    let mut loose: Vec<usize> = (0..pieces.len())
+        .filter(|piece| *piece != largest && is_left(piece) && (kept.contains(piece) || is_part(piece)))
+        .collect();
+    loose.sort_by(|a, b| kept.contains(b).cmp(&kept.contains(a)).then(by_area(b, a)));
+    loose.truncate(MOST_LOOSE);
+    loose.sort_unstable();
+    Ok(Some(Chosen {
+        largest,
+        loose: loose.into_iter().map(|piece| (piece, kept.contains(&piece))).collect(),
+        dropped,
+    }))
+}
+
+/// What is said of the pieces that the outline goes without.
+pub(super) fn note_pieces(pieces: &[Piece], chosen: &Chosen, dirt: f64, notes: &mut Vec<InputNote>) {
+    let others = (0..pieces.len()).filter(|piece| *piece != chosen.largest && !chosen.dropped.contains(piece));
+    let (specks, loose): (Vec<Piece>, Vec<Piece>) = others.map(|k| pieces[k]).partition(|piece| piece.area < dirt);
+    let area = |pieces: &[Piece]| pieces.iter().map(|piece| piece.area).sum();
+    if let Some(most) = loose.iter().copied().reduce(|a, b| if b.area > a.area { b } else { a }) {
+        notes.push(InputNote::PartsLeftOut {
+            count: loose.len(),
+            area: area(&loose),
+            place: most.centroid,
+        });
+    }
+    if !specks.is_empty() {
+        notes.push(InputNote::SpecksLeftOut {
+            count: specks.len(),
+            area: area(&specks),
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pieces(areas: &[f64]) -> Vec<Piece> {
+        let piece = |(k, &area): (usize, &f64)| Piece {
+            area,
+            centroid: Point::new(10.0 * k as f64, 0.0),
+        };
+        areas.iter().enumerate().map(piece).collect()
+    }
+
+    fn chosen(areas: &[f64], options: &PartOptions) -> Result<Option<Chosen>, InputError> {
+        let at = |place: Point| (place.y == 0.0).then_some((place.x / 10.0) as usize);
+        choose(&pieces(areas), options, |area| 0.01 * area, at)
+    }
+
+    #[test]
+    fn dirt_stays_away_unless_it_is_asked_for() {
+        let areas = [5.0, 1000.0, 200.0];
+        let loose = |options: &PartOptions| chosen(&areas, options).expect("a choice").map(|chosen| chosen.loose);
+        assert_eq!(loose(&PartOptions::default()), Some(vec![(2, false)]));
+        let keep = vec![Point::zeros()];
+        let kept = PartOptions {
+            keep: keep.clone(),
+            ..PartOptions::default()
+        };
+        assert_eq!(loose(&kept), Some(vec![(0, true), (2, false)]));
+        let rule = PartRule::Largest;
+        let drop = Vec::new();
+        assert_eq!(loose(&PartOptions { rule, keep, drop }), Some(vec![(0, true)]));
+    }
+
+    #[test]
+    fn what_is_dropped_is_not_the_largest_either() {
+        let options = |x: &[f64]| PartOptions {
+            drop: x.iter().map(|x| Point::new(*x, 0.0)).collect(),
+            ..PartOptions::default()
+        };
+        let largest = |options| {
+            chosen(&[5.0, 1000.0, 200.0], &options)
+                .expect("a choice")
+                .map(|chosen| chosen.largest)
+        };
+        assert_eq!(largest(options(&[10.0])), Some(2));
+        assert!(matches!(
+            chosen(&[5.0, 9.0], &options(&[0.0, 10.0])),
+            Err(InputError::AllDropped)
+        ));
+        let beside = PartOptions {
+            keep: vec![Point::new(3.0, 7.0)],
+            ..PartOptions::default()
+        };
+        assert!(matches!(chosen(&[5.0], &beside), Err(InputError::NoPartThere { .. })));
+        assert_eq!(chosen(&[], &PartOptions::default()).expect("nothing"), None);
+    }
+}
