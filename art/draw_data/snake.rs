@@ -130,6 +130,7 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
         &Scene {
             element: Some("body"),
             poses,
+            landmarks: &[],
             mesh: MESH,
             sharpness: 0.8,
             size_px: [960, 480],
@@ -138,7 +139,7 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
     )
 }
 
-/// The points of the outline that the artist names, in body coordinates: going round the body from the tail.
+/// The points of the outline that are known, in body coordinates: going round the body from the tail.
 fn landmarks() -> Vec<(String, Point)> {
     let side = |name: &str, sign: f64| -> Vec<(String, Point)> {
         let station = |k: u32| {

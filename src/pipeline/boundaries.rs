@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::drawn::{RegistrationGuide, match_by_drawing};
+use super::drawn::{Known, RegistrationGuide, match_by_drawing};
 use super::spec::LayerSpec;
 use super::{PipelineError, Stage};
 use crate::appearance::Appearance;
@@ -77,8 +77,11 @@ impl Boundaries {
                         drawings,
                         &mut outlines,
                         &appearances,
-                        on_outline,
-                        inside,
+                        &Known {
+                            landmarks: on_outline,
+                            inside,
+                        },
+                        before.and_then(|before| before.guide.as_ref()),
                         options,
                     )
                 },

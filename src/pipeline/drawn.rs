@@ -47,17 +47,26 @@ pub(super) fn appearances(drawings: &[Arc<Drawing>]) -> Vec<Arc<Appearance>> {
         .collect()
 }
 
-/// Matches all rings and registers the interiors. `inside` are pairs of points inside that correspond for certain: #points x #poses.
+/// What an artist says corresponds.
+pub(super) struct Known<'a> {
+    /// Points of the outer rings.
+    pub(super) landmarks: &'a [Landmark],
+    /// Points inside, #points x #poses.
+    pub(super) inside: &'a [Vec<Option<Point>>],
+}
+
+/// Matches all rings and registers the interiors; what of that `before` has is not made again.
 pub(super) fn match_by_drawing(
     names: &[String],
     drawings: &[Arc<Drawing>],
     outlines: &mut [Outline],
     appearances: &[Arc<Appearance>],
-    landmarks: &[Landmark],
-    inside: &[Vec<Option<Point>>],
+    known: &Known,
+    before: Option<&RegistrationGuide>,
     mut options: MatchOptions,
 ) -> Result<(Matched, RegistrationGuide), PipelineError> {
     let refusal = |error: MatchError| match_refusal(names, error);
+    let &Known { landmarks, inside } = known;
     let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
     let candidates = proposed(&outer, appearances, landmarks, &options).map_err(refusal)?;
     let reference = candidates.reference();
@@ -78,8 +87,14 @@ pub(super) fn match_by_drawing(
             certain.chain(named.map(|[from, to]| Pin::likely(from, to))).collect()
         })
         .collect();
-    let (registration, chosen) = register(appearances, reference, &beginnings, &pins)
-        .map_err(|error| PipelineError::stage(names, Some(reference), error))?;
+    let (registration, chosen) = register(
+        appearances,
+        reference,
+        &beginnings,
+        &pins,
+        before.map(|before| &before.registration),
+    )
+    .map_err(|error| PipelineError::stage(names, Some(reference), error))?;
     let carried = |pose: usize, place: Point| registration.carried(pose, place);
     let mut first = candidates
         .settled(&outer, &chosen, &options, &carried)
@@ -137,7 +152,7 @@ fn residual_reflected(drawing: &Drawing, reference: &Ring, shown: &Arc<Appearanc
     };
     let candidates = proposed(&rings, &appearances, &[], &options).ok()?;
     let of_reflected = vec![Vec::new(), beginnings(&candidates, 1)];
-    let (registration, _) = register(&appearances, 0, &of_reflected, &[]).ok()?;
+    let (registration, _) = register(&appearances, 0, &of_reflected, &[], None).ok()?;
     registration.residual(1)
 }
 

@@ -8,7 +8,7 @@ use super::beginning::{INSIDE, POINT_PX};
 use super::explained::Found;
 use super::lattice::Lattice;
 use super::levels::LEVELS;
-use super::pair::{Pair, Registered};
+use super::pair::Pair;
 use super::template::Template;
 use crate::appearance::{Appearance, ChannelImage, PIXELS_PER_UNIT};
 use crate::math::{Matrix, Point};
@@ -78,13 +78,28 @@ pub struct Explained {
 /// Where the reference's places are in every pose.
 #[derive(Debug, Clone)]
 pub struct Registration {
-    lattice: Lattice,
-    reference: Arc<Appearance>,
-    poses: Vec<Option<RegisteredPose>>,
+    searched: Arc<Searched>,
+    poses: Vec<Option<Arc<RegisteredPose>>>,
 }
 
-#[derive(Debug, Clone)]
+/// What of the reference is looked for in every pose.
+#[derive(Debug)]
+struct Searched {
+    reference: Arc<Appearance>,
+    lattice: Lattice,
+    /// By level.
+    templates: Vec<Template>,
+    /// What beginnings are compared by.
+    points: Template,
+    /// Which vertices are inside the figure, away from its edge.
+    inside: Vec<bool>,
+}
+
+#[derive(Debug)]
 struct RegisteredPose {
+    beginnings: Vec<RingPairs>,
+    pins: Vec<Pin>,
+    chosen: usize,
     appearance: Arc<Appearance>,
     places: Vec<Point>,
     frames: Vec<Matrix>,
@@ -97,8 +112,11 @@ impl Registration {
     #[must_use]
     pub fn carried(&self, pose: usize, place: Point) -> Option<Point> {
         let registered = self.poses.get(pose)?.as_ref()?;
-        let p = self.reference.to_pixels(place);
-        let carried = self.lattice.carried(&registered.places, &registered.frames, p)?;
+        let p = self.searched.reference.to_pixels(place);
+        let carried = self
+            .searched
+            .lattice
+            .carried(&registered.places, &registered.frames, p)?;
         Some(registered.appearance.to_source(carried))
     }
 
@@ -115,8 +133,62 @@ impl Registration {
     }
 }
 
+impl Searched {
+    fn new(reference: &Arc<Appearance>) -> Result<Self, RegistrationError> {
+        let lattice = Lattice::new(&reference.mask(), reference.size()[0], SPACING * PIXELS_PER_UNIT);
+        if lattice.points.is_empty() {
+            return Err(RegistrationError::NoFigure);
+        }
+        let images: Vec<ChannelImage> = (LEVELS.par_iter())
+            .map(|level| reference.blurred(level.deviation_px))
+            .collect();
+        let templates = (LEVELS.par_iter().zip(&images))
+            .map(|(level, image)| Template::new(&lattice, image, level.patch_radius * PIXELS_PER_UNIT))
+            .collect();
+        let coarsest = &images[0];
+        Ok(Self {
+            templates,
+            points: Template::new(&lattice, coarsest, POINT_PX),
+            inside: (lattice.points.iter())
+                .map(|p| coarsest.at(p.x as f32, p.y as f32)[4] >= INSIDE)
+                .collect(),
+            reference: Arc::clone(reference),
+            lattice,
+        })
+    }
+
+    fn registered(
+        &self,
+        appearance: &Arc<Appearance>,
+        beginnings: &[RingPairs],
+        pins: &[Pin],
+    ) -> Result<RegisteredPose, RegistrationError> {
+        let pair = Pair::new(&self.lattice, &self.reference, appearance, pins, &self.inside);
+        let registered = pair.registered(&self.points, &self.templates, beginnings)?;
+        let found = Found::new(&self.lattice, &registered);
+        let residual = registered.residuals.iter().map(|left| f64::from(*left)).sum::<f64>();
+        Ok(RegisteredPose {
+            beginnings: beginnings.to_vec(),
+            pins: pins.to_vec(),
+            chosen: registered.beginning,
+            explained: Explained {
+                share: found.share,
+                least: [
+                    self.reference.to_source(self.lattice.points[found.least]),
+                    appearance.to_source(registered.places[found.least]),
+                ],
+            },
+            residual: residual / registered.residuals.len().max(1) as f64,
+            appearance: Arc::clone(appearance),
+            places: registered.places,
+            frames: registered.frames,
+        })
+    }
+}
+
 /// Registers every pose of `appearances` but the reference, and says for each which beginning explained the drawing best. `beginnings` has for
-/// each at least one beginning, the one that turns the drawing least first; `pins` are pairs of points that are known to correspond.
+/// each at least one beginning, the one that turns the drawing least first; `pins` are pairs of points that are known to correspond. What
+/// `before` has made of the same is taken from there.
 ///
 /// # Errors
 /// [`RegistrationError`] if the reference has no figure.
@@ -125,65 +197,38 @@ pub fn register(
     reference: usize,
     beginnings: &[Vec<RingPairs>],
     pins: &[Vec<Pin>],
+    before: Option<&Registration>,
 ) -> Result<(Registration, Vec<usize>), RegistrationError> {
     let own = &appearances[reference];
-    let lattice = Lattice::new(&own.mask(), own.size()[0], SPACING * PIXELS_PER_UNIT);
-    if lattice.points.is_empty() {
-        return Err(RegistrationError::NoFigure);
-    }
-    let images: Vec<ChannelImage> = LEVELS.par_iter().map(|level| own.blurred(level.deviation_px)).collect();
-    let templates: Vec<Template> = (LEVELS.par_iter().zip(&images))
-        .map(|(level, image)| Template::new(&lattice, image, level.patch_radius * PIXELS_PER_UNIT))
-        .collect();
-    let points = Template::new(&lattice, &images[0], POINT_PX);
-    let inside: Vec<bool> = (lattice.points.iter())
-        .map(|p| images[0].at(p.x as f32, p.y as f32)[4] >= INSIDE)
-        .collect();
-    let registered: Vec<Option<Registered>> = (0..appearances.len())
-        .into_par_iter()
-        .map(|pose| {
-            let beginnings = beginnings.get(pose).map_or(&[][..], Vec::as_slice);
-            if pose == reference || beginnings.is_empty() {
-                return Ok(None);
-            }
-            let pair = Pair::new(
-                &lattice,
-                own,
-                &appearances[pose],
-                pins.get(pose).map_or(&[], Vec::as_slice),
-                &inside,
-            );
-            pair.registered(&points, &templates, beginnings).map(Some)
-        })
-        .collect::<Result<_, RegistrationError>>()?;
-    let chosen = (registered.iter())
-        .map(|registered| registered.as_ref().map_or(0, |registered| registered.beginning))
-        .collect();
-    let poses = (registered.into_iter().zip(appearances))
-        .map(|(registered, appearance)| {
-            registered.map(|registered| {
-                let found = Found::new(&lattice, &registered);
-                let residual = registered.residuals.iter().map(|left| f64::from(*left)).sum::<f64>();
-                RegisteredPose {
-                    explained: Explained {
-                        share: found.share,
-                        least: [
-                            own.to_source(lattice.points[found.least]),
-                            appearance.to_source(registered.places[found.least]),
-                        ],
-                    },
-                    residual: residual / registered.residuals.len().max(1) as f64,
-                    appearance: Arc::clone(appearance),
-                    places: registered.places,
-                    frames: registered.frames,
-                }
-            })
-        })
-        .collect();
-    let registration = Registration {
-        reference: Arc::clone(own),
-        lattice,
-        poses,
+    let before = before.filter(|before| Arc::ptr_eq(&before.searched.reference, own));
+    let searched = match before {
+        Some(before) => Arc::clone(&before.searched),
+        None => Arc::new(Searched::new(own)?),
     };
-    Ok((registration, chosen))
+    let registered = |pose: usize| {
+        let appearance = &appearances[pose];
+        let beginnings = beginnings.get(pose).map_or(&[][..], Vec::as_slice);
+        let pins = pins.get(pose).map_or(&[][..], Vec::as_slice);
+        if pose == reference || beginnings.is_empty() {
+            return Ok(None);
+        }
+        let same = before
+            .and_then(|before| before.poses.get(pose)?.as_ref())
+            .filter(|before| {
+                Arc::ptr_eq(&before.appearance, appearance) && before.pins == pins && before.beginnings == beginnings
+            });
+        let made = match same {
+            Some(same) => Arc::clone(same),
+            None => Arc::new(searched.registered(appearance, beginnings, pins)?),
+        };
+        Ok(Some(made))
+    };
+    let poses: Vec<Option<Arc<RegisteredPose>>> = (0..appearances.len())
+        .into_par_iter()
+        .map(registered)
+        .collect::<Result<_, RegistrationError>>()?;
+    let chosen = (poses.iter())
+        .map(|pose| pose.as_ref().map_or(0, |pose| pose.chosen))
+        .collect();
+    Ok((Registration { searched, poses }, chosen))
 }

@@ -22,6 +22,7 @@ pub(super) const MOST_DIFFERENCE: f32 = 1.2;
 const VERTICES_A_TASK: usize = 16;
 
 /// Patches of the reference at one level of its scale space.
+#[derive(Debug)]
 pub(super) struct Template {
     offsets: Vec<Point>,
     /// #vertices x #offsets.

@@ -53,12 +53,17 @@ const LAYERS: [Layer; 4] = [
     },
 ];
 
+/// Where the boots stand, and where layers hang.
+const LANDMARKS: [&str; 5] = ["left_toe", "right_toe", "shoulder", "far_shoulder", "stem"];
+
 const SETTINGS: &str = "\
 [mesh]
 simplify = 0.006
 edge_length = 0.06
 
 [blend]
+# Where the paw turns fastest a triangle would be turned over.
+guard = \"repair\"
 # The boots stay on the ground. Layers without these landmarks are hung on others anyway.
 anchor = [\"left_toe\", \"right_toe\"]
 
@@ -139,6 +144,7 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
         &Scene {
             layers: &LAYERS,
             poses,
+            landmarks: &LANDMARKS,
             settings: SETTINGS,
             size_px: [480, 540],
             keys: KEYS,

@@ -73,6 +73,7 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
         &Scene {
             element: None,
             poses,
+            landmarks: &["left_hand", "right_hand"],
             mesh: MESH,
             sharpness: 0.8,
             size_px: [480, 540],

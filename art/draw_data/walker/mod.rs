@@ -61,6 +61,7 @@ pub(crate) fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
         &Scene {
             element: None,
             poses,
+            landmarks: &[],
             mesh: "",
             sharpness: 0.8,
             size_px: [480, 540],

@@ -1,13 +1,11 @@
 //! Deformed copies, from the scene file to the frame, and reaching with landmarks.
 
-mod workshop;
-
+use crate::workshop::Workshop;
 use inbetween::math::Point;
 use inbetween::mesh::PointLocator;
 use inbetween::pipeline::map_layer;
 use inbetween::pose::{Mapping, Repair};
 use inbetween::scene::Scene;
-use workshop::Workshop;
 
 /// The corners correspond, and an eye.
 const LANDMARKS: &str = "[[landmark]]\nname = \"ear\"\nat = { tall = [12, 4], wide = [4, 12] }\n\

@@ -1,8 +1,6 @@
 //! The command does what its help says.
 
-mod workshop;
-
-use workshop::Workshop;
+use crate::workshop::Workshop;
 
 fn two() -> Workshop {
     let workshop = Workshop::new();

@@ -1,12 +1,10 @@
 //! Holes that poses do not share, through the real command: the mesh covers them, and the pictures open and close them.
 
-mod workshop;
-
 use std::path::Path;
 
+use crate::workshop::Workshop;
 use inbetween::input::read_picture;
 use inbetween::pose::Mapping;
-use workshop::Workshop;
 
 /// A disc of ink, and the same with a hole off its middle, on nothing.
 fn disc_and_ring() -> Workshop {

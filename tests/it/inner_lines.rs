@@ -1,9 +1,7 @@
 //! Lines and points inside the drawings, through the real command.
 
-mod workshop;
-
+use crate::workshop::Workshop;
 use serde_json::Value;
-use workshop::Workshop;
 
 /// Lines in the tall and the wide box of [`Workshop::two_poses`].
 const BROW: &str = "[[landmark]]\nname = \"brow\"\npath = true\n\

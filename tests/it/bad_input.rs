@@ -1,9 +1,7 @@
 //! Bad input through the real command: exit code 1, one message that names file, pose and place and says what to do, and
 //! nothing written.
 
-mod workshop;
-
-use workshop::{Workshop, png_that_claims};
+use crate::workshop::{Workshop, png_that_claims};
 
 /// Runs `map` on a scene and expects a refusal whose message has all of `words`.
 fn refused(workshop: &Workshop, words: &[&str]) {

@@ -1,10 +1,8 @@
 //! `inbetween shape` does what its help says, on a bar of quadrangles that bends and grows fat.
 
-mod workshop;
-
 use std::fmt::Write as _;
 
-use workshop::Workshop;
+use crate::workshop::Workshop;
 
 /// Rings of the bar, each with four corners.
 const RINGS: usize = 9;

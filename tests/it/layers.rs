@@ -1,16 +1,14 @@
 //! The scene with layers: an arm that crosses the chest, and a flower that is not always there.
 
-mod workshop;
-
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
+use crate::workshop::Workshop;
 use inbetween::math::Point;
 use inbetween::pipeline::{Character, Posed, ShapePoint};
 use inbetween::render::{Camera, Frame};
 use inbetween::scene::Scene;
 use resvg::tiny_skia::{Pixmap, Transform};
-use workshop::Workshop;
 
 const SIZE: [usize; 2] = [240, 270];
 /// From how much a difference of a pixel counts, in 255ths.

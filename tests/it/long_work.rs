@@ -1,13 +1,11 @@
 //! Work that is long can be killed, resumed and run out of room.
 
-mod workshop;
-
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use workshop::Workshop;
+use crate::workshop::Workshop;
 
 /// Enough frames that a run can be killed in the middle.
 const ANIMATION: &str = "[animation]\nfps = 60\nsize = [160, 120]\nbackground = \"white\"\n";

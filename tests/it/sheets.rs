@@ -1,9 +1,7 @@
 //! Several pictures in one file are several poses: frames of animated files, cells of sheets; and one more drawing is one more pose.
 
-mod workshop;
-
+use crate::workshop::Workshop;
 use inbetween::scene::Scene;
-use workshop::Workshop;
 
 fn names(workshop: &Workshop, scene: &str) -> Vec<String> {
     Scene::open(&workshop.path(scene)).expect("a scene").names()

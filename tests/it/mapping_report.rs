@@ -1,11 +1,9 @@
 //! What a mapping tells about itself, through the library and through the command.
 
-mod workshop;
-
+use crate::workshop::Workshop;
 use inbetween::pipeline::{MappingReport, Stage, map_layer, map_layer_observed};
 use inbetween::pose::{LandmarkKind, Mapping, MeshQuality};
 use inbetween::scene::Scene;
-use workshop::Workshop;
 
 /// The upper left corners correspond, so that the boxes are not turned into one another; an eye inside, which the wide box
 /// lacks; a line inside.
