@@ -44,6 +44,8 @@ pub struct Appearance {
     origin: Point,
     /// Working pixels a source unit.
     scale: f64,
+    /// The holes of the outline, in working pixels.
+    holes: Vec<Vec<Point>>,
 }
 
 impl Appearance {
@@ -73,10 +75,30 @@ impl Appearance {
             },
             origin,
             scale,
+            holes: Vec::new(),
         };
+        figure.holes = (outline.holes().iter())
+            .map(|hole| hole.points().iter().map(|p| figure.to_pixels(*p)).collect())
+            .collect();
         let coverage = figure.coverage(outline);
         figure.base.pixels = figure.channels(picture, &coverage);
         figure
+    }
+
+    /// The same figure without its colours: lines and form are left, which other colours do not change.
+    #[must_use]
+    pub fn without_colours(&self) -> Self {
+        let mut plain = self.clone();
+        for pixel in &mut plain.base.pixels {
+            pixel[..3].fill(0.0);
+        }
+        plain
+    }
+
+    /// The holes of the outline, in working pixels.
+    #[must_use]
+    pub fn holes(&self) -> &[Vec<Point>] {
+        &self.holes
     }
 
     /// Columns and rows.

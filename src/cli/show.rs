@@ -15,7 +15,8 @@ use super::{Failure, Verbosity};
 /// Explain a scene in one picture
 ///
 /// Top: the outlines of all poses; equal numbers correspond, the colour between two says how unlike the outlines are, so
-/// that you see where to put a landmark. Middle: the mesh on every pose, its thinnest triangles marked. Bottom: the pose
+/// that you see where to put a landmark. Middle: what corresponds inside has one colour, under the mesh of every pose, whose thinnest
+/// triangles are marked. Bottom: the pose
 /// space, each place coloured by the weights of the poses there, the animation's path drawn in.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  inbetween show walker/scene.toml -o walker.png")]

@@ -14,7 +14,11 @@ use crate::input::Drawing;
 use crate::matching::{Landmark, MatchError, MatchOptions, MirrorHints, RingCandidates, RingMatch};
 use crate::math::Point;
 use crate::outline::{ArcLength, Outline, Ring};
-use crate::registration::{Pin, Registration, RingPairs, register};
+use crate::registration::{Explained, Pin, Registration, RingPairs, register};
+
+/// From this share of the reference's figure on that is found in a pose, it is the same character in the same colours: drawn anew, two thirds of one
+/// are found at least, of another an eighth at most.
+const FOUND_SHARE: f64 = 0.5;
 
 /// A drawing looks reflected if its reflection differs from the reference by less than this share of what it differs itself.
 const REFLECTED_SHARE: f64 = 0.8;
@@ -68,7 +72,7 @@ pub(super) fn match_by_drawing(
     let refusal = |error: MatchError| match_refusal(names, error);
     let &Known { landmarks, inside } = known;
     let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
-    let candidates = proposed(&outer, appearances, landmarks, &options).map_err(refusal)?;
+    let mut candidates = proposed(&outer, appearances, landmarks, &options).map_err(refusal)?;
     let reference = candidates.reference();
     let poses = 0..outlines.len();
     let beginnings: Vec<Vec<RingPairs>> = poses.clone().map(|pose| beginnings(&candidates, pose)).collect();
@@ -87,7 +91,7 @@ pub(super) fn match_by_drawing(
             certain.chain(named.map(|[from, to]| Pin::likely(from, to))).collect()
         })
         .collect();
-    let (registration, chosen) = register(
+    let (mut registration, mut chosen) = register(
         appearances,
         reference,
         &beginnings,
@@ -95,6 +99,30 @@ pub(super) fn match_by_drawing(
         before.map(|before| &before.registration),
     )
     .map_err(|error| PipelineError::stage(names, Some(reference), error))?;
+    // Drawings in other colours have their form and their lines in common.
+    let unlike = |pose: &usize| {
+        registration
+            .explained(*pose)
+            .is_some_and(|explained| !is_found(&explained))
+    };
+    let unlike: Vec<usize> = (0..outlines.len()).filter(unlike).collect();
+    if !unlike.is_empty() {
+        let mut plain = appearances.to_vec();
+        for &pose in &unlike {
+            plain[pose] = Arc::new(appearances[pose].without_colours());
+        }
+        options.reference = Some(reference);
+        candidates = proposed(&outer, &plain, landmarks, &options).map_err(refusal)?;
+        let shown = Arc::new(appearances[reference].without_colours());
+        for pose in unlike {
+            let both = [Arc::clone(&shown), Arc::clone(&plain[pose])];
+            let begins = [Vec::new(), self::beginnings(&candidates, pose)];
+            let (by_form, chosen_of) = register(&both, 0, &begins, &[Vec::new(), pins[pose].clone()], None)
+                .map_err(|error| PipelineError::stage(names, Some(pose), error))?;
+            registration.placed_as_in(pose, &by_form, 1);
+            chosen[pose] = chosen_of[1];
+        }
+    }
     let carried = |pose: usize, place: Point| registration.carried(pose, place);
     let mut first = candidates
         .settled(&outer, &chosen, &options, &carried)
@@ -131,6 +159,11 @@ pub(super) fn match_by_drawing(
             registration,
         },
     ))
+}
+
+/// Whether enough of the reference is found in a pose to say nothing of it.
+pub(super) fn is_found(explained: &Explained) -> bool {
+    explained.share >= FOUND_SHARE
 }
 
 /// How a registration of `pose` may begin.

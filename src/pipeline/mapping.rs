@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::boundaries::Boundaries;
 use super::drawings::used_drawings;
+use super::drawn::is_found;
 use super::landmarks::{self, Landmarks};
 use super::spec::{LayerRole, LayerSpec};
 use super::triangulation::{self, Labels};
@@ -23,9 +24,6 @@ const FINER_LINES: [f64; 4] = [1.0, 0.25, 0.0625, 0.0];
 
 /// By how much, as a fraction, the units of drawings may differ without a word: rounding of a page's size.
 const LIKE_UNITS: f64 = 0.02;
-
-/// From this share of the reference's figure on that is found in a pose, nothing is said.
-const EXPLAINED_ENOUGH: f64 = 0.5;
 
 /// A variation of the simplification with fewer Steiner points is kept if the low angles of its refined mesh are at least
 /// this share of the first one's: good triangles are worth more than few points.
@@ -192,12 +190,11 @@ fn map_drawn(
 fn notes_on_strangers(names: &[String], reference: usize, explained: &[Option<Explained>]) -> Vec<String> {
     (names.iter().zip(explained))
         .filter_map(|(name, explained)| {
-            let Explained { share, least } = (*explained)?;
-            let [from, to] = least;
-            (share < EXPLAINED_ENOUGH).then(|| {
-                format!(
-                    "only {:.0} % of what pose '{}' shows is found on pose '{name}', least of all near ({:.0}, {:.0}); if it is the same \
-                     character, a landmark there, on '{}' near ({:.0}, {:.0}), would help most",
+            let explained = explained.filter(|explained| !is_found(explained))?;
+            let Explained { share, least: [from, to] } = explained;
+            Some(format!(
+                    "only {:.0} % of what pose '{}' shows is found on pose '{name}', least of all near ({:.0}, {:.0}), so that their forms alone are \
+                     matched; if it is the same character, a landmark there, on '{}' near ({:.0}, {:.0}), would help most",
                     100.0 * share,
                     names[reference],
                     to.x,
@@ -205,8 +202,7 @@ fn notes_on_strangers(names: &[String], reference: usize, explained: &[Option<Ex
                     names[reference],
                     from.x,
                     from.y
-                )
-            })
+            ))
         })
         .collect()
 }

@@ -6,7 +6,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::levels::LEVELS;
-use super::outline::{RingPair, spread};
+use super::outline::{RingPair, nearest_on_ring, spread};
 use super::pair::Pair;
 use super::register::{RegistrationError, RingPairs};
 use super::rigid::Rigid;
@@ -31,6 +31,8 @@ const ALTERNATIONS: usize = 12;
 const HOPELESS: f64 = 0.03;
 /// Of so many points of an outline one is looked at.
 const SQUASH_STRIDE: usize = 4;
+/// And of a hole at most so many.
+const POINTS_OF_A_HOLE: usize = 32;
 
 /// What a registration begins with.
 pub(super) struct Beginning {
@@ -48,18 +50,20 @@ impl Pair<'_> {
         beginnings: &[RingPairs],
     ) -> Result<Beginning, RegistrationError> {
         let (number, rings, places) = self.least_different(points, beginnings)?;
-        Ok(match Affine::squashing(&rings) {
-            Some(affine) => Beginning {
-                places: self.moved(&affine),
-                form: affine.linear,
-                number,
+        Ok(
+            match Affine::squashing(&rings, [self.reference.holes(), self.pose.holes()]) {
+                Some(affine) => Beginning {
+                    places: self.moved(&affine),
+                    form: affine.linear,
+                    number,
+                },
+                None => Beginning {
+                    places,
+                    form: Matrix::identity(),
+                    number,
+                },
             },
-            None => Beginning {
-                places,
-                form: Matrix::identity(),
-                number,
-            },
-        })
+        )
     }
 
     /// The beginning whose drawings differ least where it has them: its number, its rings and where they put the vertices.
@@ -166,17 +170,26 @@ impl Affine {
     }
 
     /// The map under which the reference's outlines *are* the pose's wherever their points go, if there is one: points in correspondence by arc
-    /// length are not yet where an affine map has them. Nearest points and the best map for them alternate (Besl and McKay 1992).
-    fn squashing(rings: &[RingPair]) -> Option<Self> {
+    /// length are not yet where an affine map has them. Nearest points and the best map for them alternate (Besl and McKay 1992). The holes
+    /// have to follow if there are as many: of a disc they alone say how far it is turned.
+    fn squashing(rings: &[RingPair], [holes, holes_of_pose]: [&[Vec<Point>]; 2]) -> Option<Self> {
+        let holes = if holes.len() == holes_of_pose.len() { holes } else { &[] };
         let mut affine = Self::of(rings)?;
         let mut distance = f64::INFINITY;
         for _ in 0..ALTERNATIONS {
-            let pairs: Vec<(Point, Point)> = (rings.iter())
-                .flat_map(|ring| {
-                    let points = ring.reference.iter().step_by(SQUASH_STRIDE);
-                    points.map(|p| (*p, ring.nearest_of_pose(affine.at(*p))))
-                })
-                .collect();
+            let on_outlines = rings.iter().flat_map(|ring| {
+                let points = ring.reference.iter().step_by(SQUASH_STRIDE);
+                points.filter_map(|p| Some((*p, nearest_on_ring(&ring.pose, affine.at(*p))?.1)))
+            });
+            let nearest_hole = |p: Point| {
+                let on_holes = holes_of_pose.iter().filter_map(|hole| nearest_on_ring(hole, p));
+                on_holes.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, nearest)| nearest)
+            };
+            let on_holes = holes.iter().flat_map(|hole| {
+                let points = hole.iter().step_by(hole.len().div_ceil(POINTS_OF_A_HOLE));
+                points.filter_map(|p| Some((*p, nearest_hole(affine.at(*p))?)))
+            });
+            let pairs: Vec<(Point, Point)> = on_outlines.chain(on_holes).collect();
             let apart: f64 = pairs.iter().map(|(a, b)| (affine.at(*a) - b).norm()).sum();
             distance = apart / (pairs.len().max(1) as f64 * PIXELS_PER_UNIT);
             if distance > HOPELESS {

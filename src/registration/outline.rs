@@ -20,22 +20,18 @@ pub(super) struct RingPair {
     pub(super) pose: Vec<Point>,
 }
 
-impl RingPair {
-    /// The point of the pose's ring nearest to `p`, which is next to the nearest of its samples.
-    pub(super) fn nearest_of_pose(&self, p: Point) -> Point {
-        let count = self.pose.len();
-        let squared = |k: &usize| (self.pose[*k] - p).norm_squared();
-        let Some(nearest) = (0..count).min_by(|a, b| squared(a).total_cmp(&squared(b))) else {
-            return p;
-        };
-        let on_segment = |from: usize| {
-            let (a, b) = (self.pose[from], self.pose[(from + 1) % count]);
-            let (along, distance) = point::nearest_on_segment(p, a, b);
-            (distance, a + (b - a) * along)
-        };
-        let (before, after) = (on_segment((nearest + count - 1) % count), on_segment(nearest));
-        if before.0 < after.0 { before.1 } else { after.1 }
-    }
+/// The point of a closed polygon nearest to `p` and its distance: it is next to the nearest of the vertices. `None` if it has none.
+pub(super) fn nearest_on_ring(ring: &[Point], p: Point) -> Option<(f64, Point)> {
+    let count = ring.len();
+    let squared = |k: &usize| (ring[*k] - p).norm_squared();
+    let nearest = (0..count).min_by(|a, b| squared(a).total_cmp(&squared(b)))?;
+    let on_segment = |from: usize| {
+        let (a, b) = (ring[from], ring[(from + 1) % count]);
+        let (along, distance) = point::nearest_on_segment(p, a, b);
+        (distance, a + (b - a) * along)
+    };
+    let (before, after) = (on_segment((nearest + count - 1) % count), on_segment(nearest));
+    Some(if before.0 < after.0 { before } else { after })
 }
 
 /// Where the vertices go when the outlines do: those near an outline as it moves and turns there, those near a pin as it moves, the others as

@@ -95,7 +95,7 @@ struct Searched {
     inside: Vec<bool>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct RegisteredPose {
     beginnings: Vec<RingPairs>,
     pins: Vec<Pin>,
@@ -124,6 +124,18 @@ impl Registration {
     #[must_use]
     pub fn residual(&self, pose: usize) -> Option<f64> {
         Some(self.poses.get(pose)?.as_ref()?.residual)
+    }
+
+    /// `pose` as pose `number` of `other` has it, which is a registration of the same figures seen otherwise; how far the drawing is explained stays.
+    pub(crate) fn placed_as_in(&mut self, pose: usize, other: &Self, number: usize) {
+        let theirs = other.poses.get(number).and_then(Option::as_ref);
+        if let (Some(Some(own)), Some(theirs)) = (self.poses.get_mut(pose), theirs) {
+            *own = Arc::new(RegisteredPose {
+                places: theirs.places.clone(),
+                frames: theirs.frames.clone(),
+                ..own.as_ref().clone()
+            });
+        }
     }
 
     /// How much of what the reference shows is found in the drawing of `pose`, and where least; `None` as for [`carried`](Self::carried).

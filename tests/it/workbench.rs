@@ -17,19 +17,19 @@ fn edits_repeat_what_they_concern_and_nothing_else() {
     let text = std::fs::read_to_string(file()).expect("readable");
     let mut text = text.replace("[texture]", "[blend]\nstretch = \"linear\"\n\n[texture]");
     let mut bench = Workbench::new(&scene(&text)).expect("a workbench");
-    let nose = text
-        .find("name = \"nose\"")
+    let hand = text
+        .find("name = \"left_hand\"")
         .map(|at| at + text[at..].find("stand = [").expect("a place"));
-    let nose = nose.expect("the scene has a nose");
+    let hand = hand.expect("the scene has a hand");
     let moved = {
-        let end = nose + text[nose..].find(']').expect("closed");
-        let numbers: Vec<f64> = text[nose + 9..end]
+        let end = hand + text[hand..].find(']').expect("closed");
+        let numbers: Vec<f64> = text[hand + 9..end]
             .split(',')
             .map(|n| n.trim().parse().expect("a number"))
             .collect();
         format!(
             "{}stand = [{}, {}{}",
-            &text[..nose],
+            &text[..hand],
             numbers[0] + 1.5,
             numbers[1],
             &text[end..]

@@ -1,11 +1,11 @@
-//! The mesh on every pose.
+//! The mesh on every pose, and what corresponds inside: a chequered colour wheel on the reference, carried to the others.
 
 use tiny_skia::Color;
 
 use super::canvas::Canvas;
 use super::layout::Cell;
-use super::{Diagram, INK, TEXT_PX, faint, hue, mark_size, worst_colour};
-use crate::math::Point;
+use super::{Diagram, INK, TEXT_PX, hue, mark_size, worst_colour};
+use crate::math::{Point, Point3, point};
 use crate::mesh::geometry;
 use crate::pose::LandmarkKind;
 
@@ -13,16 +13,31 @@ use crate::pose::LandmarkKind;
 const MARKED_SHARE: usize = 100;
 const MARKED: (usize, usize) = (3, 8);
 
+/// Pieces along a side of a triangle that are coloured by themselves.
+const PIECES: usize = 3;
+/// Squares of the chequer along the reference's diagonal.
+const SQUARES: f64 = 24.0;
+/// The lightness of its squares, in turn.
+const LIGHTNESS: [f64; 2] = [0.72, 0.86];
+
 /// Draws the mesh of every pose in its cell, with the triangles of the smallest angles in that pose marked.
 pub(super) fn draw(canvas: &mut Canvas, diagram: &Diagram, cells: &[Cell]) {
     let mapping = diagram.mapping;
     let triangles = mapping.poses.topology().triangles();
+    let wheel = Wheel::new(&mapping.poses.positions()[mapping.matching.reference]);
     for (pose, (positions, cell)) in mapping.poses.positions().iter().zip(cells).enumerate() {
         let placed: Vec<Point> = positions.iter().map(|p| cell.fit.place(*p)).collect();
-        for (k, corners) in triangles.iter().enumerate() {
-            // The golden ratio spreads hues so that neighbours differ; the colour is the triangle's in every pose.
-            let colour = faint(hue(k as f64 * 0.618_034, 0.7));
-            canvas.fill(&geometry::corners(&placed, *corners), colour);
+        for corners in triangles {
+            let on_reference = geometry::corners(wheel.reference, *corners);
+            let here = geometry::corners(&placed, *corners);
+            for weights in pieces() {
+                let middle = (weights[0] + weights[1] + weights[2]) / 3.0;
+                let colour = wheel.colour(at(&on_reference, middle));
+                let [a, b, c] = weights.map(|w| at(&here, w));
+                canvas.fill(&[a, b, c], colour);
+                // Over the seams that smooth edges leave.
+                canvas.line(&[a, b, c, a], 0.8, colour);
+            }
         }
         for corners in triangles {
             let [a, b, c] = geometry::corners(&placed, *corners);
@@ -58,6 +73,47 @@ pub(super) fn draw(canvas: &mut Canvas, diagram: &Diagram, cells: &[Cell]) {
     }
 }
 
+/// A colour for every place of the reference.
+struct Wheel<'a> {
+    reference: &'a [Point],
+    middle: Point,
+    square: f64,
+}
+
+impl<'a> Wheel<'a> {
+    fn new(reference: &'a [Point]) -> Self {
+        Self {
+            reference,
+            middle: reference.iter().sum::<Point>() / reference.len().max(1) as f64,
+            square: point::diagonal(reference) / SQUARES,
+        }
+    }
+
+    fn colour(&self, place: Point) -> Color {
+        let away = place - self.middle;
+        let turns = away.y.atan2(away.x) / std::f64::consts::TAU;
+        let squares = away / self.square;
+        let parity = (squares.x.floor() + squares.y.floor()).rem_euclid(2.0);
+        hue(turns, LIGHTNESS[usize::from(parity >= 1.0)])
+    }
+}
+
+/// The pieces of a triangle, each by the weights of its corners.
+fn pieces() -> impl Iterator<Item = [Point3; 3]> {
+    let corner = |i: usize, j: usize| Point3::new((PIECES - i - j) as f64, i as f64, j as f64) / PIECES as f64;
+    (0..PIECES).flat_map(move |i| {
+        (0..PIECES - i).flat_map(move |j| {
+            let first = [corner(i, j), corner(i + 1, j), corner(i, j + 1)];
+            let second = (i + j + 1 < PIECES).then(|| [corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]);
+            std::iter::once(first).chain(second)
+        })
+    })
+}
+
+fn at([a, b, c]: &[Point; 3], weights: Point3) -> Point {
+    a * weights.x + b * weights.y + c * weights.z
+}
+
 /// The triangles with the smallest angles at some positions, and those angles in degrees, the smallest first.
 fn smallest_angles(positions: &[Point], triangles: &[[usize; 3]]) -> Vec<(usize, f64)> {
     let mut angles: Vec<(usize, f64)> = triangles
@@ -73,6 +129,15 @@ fn smallest_angles(positions: &[Point], triangles: &[[usize; 3]]) -> Vec<(usize,
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_pieces_of_a_triangle_are_as_large_together_as_it_is() {
+        let whole = [[0.0, 0.0], [6.0, 0.0], [0.0, 3.0]].map(Point::from);
+        let areas = pieces().map(|weights| geometry::signed_area(weights.map(|w| at(&whole, w))));
+        let areas: Vec<f64> = areas.collect();
+        assert_eq!(areas.len(), PIECES * PIECES);
+        assert!(areas.iter().all(|area| (area - 1.0).abs() < 1e-12), "{areas:?}");
+    }
 
     #[test]
     fn the_thinnest_triangle_comes_first() {

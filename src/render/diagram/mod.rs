@@ -4,8 +4,8 @@
 //! 1. The outlines, coloured by how unlike they are to the reference's in each section between two numbered links; salient
 //!    points as circles, the larger the more smoothing they survive; landmarks and lines with their names. Doubtful
 //!    sections lie on a broad band and are labelled ([`Sections`]).
-//! 2. The meshes: one triangulation, drawn on every pose; triangles keep their colour, those with the smallest angles
-//!    in a pose are marked.
+//! 2. The meshes: one triangulation, drawn on every pose; places that correspond have one colour, a chequered wheel about the reference's
+//!    middle; the triangles with the smallest angles in a pose are marked.
 //! 3. The pose space: each place has the mean of the poses' colours by their weights, with lines where another
 //!    pose becomes the heaviest; dots are the poses, the line is the animation's path. Beside it the legend.
 
@@ -92,7 +92,7 @@ pub fn draw(
     let mut canvas = Canvas::new(width, height).ok_or("there are too many poses for one picture")?;
     let headings = [
         "OUTLINES: EQUAL NUMBERS CORRESPOND",
-        "MESHES: ONE TRIANGULATION",
+        "INSIDE: EQUAL COLOURS CORRESPOND, ONE TRIANGULATION",
         "POSE SPACE: WHOSE WEIGHTS COUNT WHERE",
     ];
     for (words, corner) in headings.into_iter().zip(layout.headings) {
