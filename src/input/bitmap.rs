@@ -217,17 +217,19 @@ fn trace(
         .map(|(part, outline, is_kept)| LoosePart {
             picture: Some(picture.cropped(part.bounds, CROP_MARGIN)),
             outline,
+            area: part.area,
             art: None,
             is_kept,
         })
         .collect();
     if !in_order.is_empty() {
         // Nothing overlaps in a bitmap: what is small is drawn over what is large.
-        in_order.sort_by(|a, b| b.outline.area().total_cmp(&a.outline.area()));
+        in_order.sort_by(|a, b| b.area.total_cmp(&a.area));
         in_order.insert(
             0,
             LoosePart {
                 outline: outline.clone(),
+                area: largest.area,
                 picture: None,
                 art: None,
                 is_kept: false,

@@ -41,6 +41,8 @@ pub struct PartOptions {
 pub struct LoosePart {
     /// Its shape, in source units.
     pub outline: Outline,
+    /// What it covers, in source units squared: of a few pixels more than lies inside the smooth outline around their centres.
+    pub area: f64,
     /// Its pixels; `None` for those of the drawing itself.
     pub picture: Option<Picture>,
     /// Its curves, if the drawing has any.

@@ -430,6 +430,7 @@ fn divided(
         };
         let part = LoosePart {
             outline: outline.clone(),
+            area: outline.area(),
             picture,
             art: divided.as_ref().map(|divided| divided.only(|own| own == place)),
             is_kept,

@@ -157,8 +157,9 @@ fn pieces(parts: &[Region], hole_rule: HoleRule, options: &PartOptions) -> Resul
         chosen.largest,
         outline_of(&parts[chosen.largest], dirt, hole_rule, &mut notes)?,
     )];
-    // Specks and what is dropped only say whose curves are whose.
-    let others = (0..parts.len()).filter(|piece| *piece != chosen.largest);
+    // Specks and what is dropped only say whose curves are whose, where that is asked.
+    let is_divided = !chosen.loose.is_empty() || !chosen.dropped.is_empty();
+    let others = (0..parts.len()).filter(|piece| is_divided && *piece != chosen.largest);
     outlines.extend(others.filter_map(|piece| {
         let outline = outline_of(&parts[piece], dirt, hole_rule, &mut Vec::new());
         Some((piece, outline.ok()?))

@@ -158,7 +158,10 @@ impl<'a> Pieces<'a> {
                 let shapes: Vec<PartShape> = match drawing.parts.as_slice() {
                     [] => vec![PartShape::of(&drawing.outline, &drawing.picture)],
                     parts => (parts.iter())
-                        .map(|part| PartShape::of(&part.outline, part.picture.as_ref().unwrap_or(&drawing.picture)))
+                        .map(|part| PartShape {
+                            area: part.area,
+                            ..PartShape::of(&part.outline, part.picture.as_ref().unwrap_or(&drawing.picture))
+                        })
                         .collect(),
                 };
                 match pose.facing {
@@ -348,8 +351,13 @@ impl<'a> Pieces<'a> {
                 elements.iter().find_map(|element| element.id.clone())
             });
             let is_free = |name: &String| !names.contains(name) && !taken.contains(&name.as_str());
-            let numbered = std::iter::successors(Some(number + 1), |next| Some(next + 1))
-                .map(|number| format!("{} part {number}", layer.name));
+            let numbered = std::iter::successors(Some(number + 1), |next| Some(next + 1)).map(|number| {
+                if taken.is_empty() {
+                    format!("part {number}")
+                } else {
+                    format!("{} part {number}", layer.name)
+                }
+            });
             // There are more numbers than names.
             let name = ids.chain(numbered).find(is_free).unwrap_or_default();
             names.push(name);

@@ -15,7 +15,7 @@
 //! Limits: a search, not a proof: between the first step's places a narrow valley may be missed.
 
 use super::blending::blend_options;
-use super::spec::{CharacterSpec, Places};
+use super::spec::{CharacterSpec, LayerRole, LayerSpec, Places};
 use super::{PipelineError, automatic_places, editable_weights, map_layer};
 use crate::blend::{BlendScratch, RigidBlend};
 use crate::math::{Point, point};
@@ -203,7 +203,7 @@ pub fn reach_near(
     search.found(at)
 }
 
-/// As [`reach`], for a character of one layer and the names of its landmarks: those on the outline and points inside.
+/// As [`reach`], for a character of one layer, loose parts of it apart, and the names of its landmarks: those on the outline and points inside.
 ///
 /// # Errors
 /// [`PipelineError`] from any stage before the textures, or if a landmark does not exist or is a line.
@@ -213,11 +213,20 @@ pub fn reach_landmarks(
     options: &ReachOptions,
 ) -> Result<Reach, PipelineError> {
     spec.check()?;
-    let [layer] = spec.layers.as_slice() else {
+    // Loose parts are layers, too: that with the landmarks is meant.
+    let bodies: Vec<&LayerSpec> = (spec.layers.iter())
+        .filter(|layer| layer.role == LayerRole::Body)
+        .collect();
+    let has_all = |layer: &&LayerSpec| {
+        let has = |name: &String| layer.landmarks.iter().any(|landmark| landmark.name == *name);
+        targets.iter().all(|(name, _)| has(name))
+    };
+    let [body] = bodies.as_slice() else {
         return Err(PipelineError::Layered {
             layers: spec.layers.iter().map(|layer| format!("'{}'", layer.name)).collect(),
         });
     };
+    let layer = spec.layers.iter().find(has_all).unwrap_or(body);
     let (mapping, report) = map_layer(layer)?;
     // The layer may have the poses in another order than the space: here, the layer's counts.
     let order = spec.poses_of(layer);

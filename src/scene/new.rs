@@ -68,7 +68,7 @@ pub fn scene_text(poses: &[NewPose]) -> String {
             .collect::<Vec<_>>()
             .join(", ")
     );
-    text.push_str("\n[animation]\nfps = 24\nsize = [1280, 720]\nbackground = \"transparent\"\n# Without keys the animation is a loop through all poses.\n# loop = true\n# keys = [ { time = 0.0, at = [0.0, 0.0] }, { time = 1.0, at = [1.0, 0.0] } ]\n");
+    text.push_str("\n[animation]\nfps = 24\nsize = [1280, 720]\nbackground = \"transparent\"\n# On the drawings' own canvas: camera = \"drawing\"\n# Without keys the animation is a loop through all poses.\n# loop = true\n# keys = [ { time = 0.0, at = [0.0, 0.0] }, { time = 1.0, at = [1.0, 0.0] } ]\n");
     text
 }
 

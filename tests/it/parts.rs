@@ -346,3 +346,57 @@ fn an_edit_of_a_scene_with_parts_gives_what_a_new_one_gives() {
     assert_eq!(posed(&after), posed(&new));
     assert_eq!(after.layers().len(), 2);
 }
+
+#[test]
+fn single_pixels_of_sprites_are_parts() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sprite = |name: &str, lift: usize, sparks: &[[usize; 2]]| {
+        let mut frame = Frame::filled(32, 32, [0; 4]);
+        for y in 12 - lift..26 - lift {
+            frame.pixels[y * 32 + 11..y * 32 + 20].fill([200, 60, 40, 255]);
+        }
+        for [x, y] in sparks {
+            frame.pixels[y * 32 + x] = [255, 240, 60, 255];
+        }
+        std::fs::write(folder.path().join(name), png_bytes(&frame).expect("a PNG")).expect("written");
+        frame
+    };
+    let drawn = [
+        sprite("rest.png", 0, &[]),
+        sprite("burst.png", 4, &[[5, 4], [27, 6], [3, 15]]),
+    ];
+    let text = "version = 1\n[[pose]]\nname = \"rest\"\nsource = \"rest.png\"\nat = [0.0, 0.0]\n\
+                [[pose]]\nname = \"burst\"\nsource = \"burst.png\"\nat = [1.0, 0.0]\n\
+                [texture]\nsampling = \"nearest\"\n[animation]\ncamera = \"drawing\"\n";
+    let scene = opened(folder.path(), text);
+    let character = scene.character([32, 32], 1).expect("a character");
+    assert_eq!(character.layers().len(), 4);
+    for (weights, drawn) in [[1.0, 0.0], [0.0, 1.0]].iter().zip(&drawn) {
+        assert_eq!(
+            character.frame_of(weights).expect("a frame").pixels,
+            drawn.pixels,
+            "{weights:?}"
+        );
+    }
+}
+
+#[test]
+fn a_reflected_pose_reflects_its_parts_with_its_body() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mirrored = "[animation]\ncamera = \"drawing\"\n";
+    let scene = write(
+        folder.path(),
+        &[("a", floating(90.0, 60.0)), ("b", floating(90.0, 60.0))],
+        mirrored,
+    );
+    let text = std::fs::read_to_string(&scene.file).expect("text");
+    let scene = opened(
+        folder.path(),
+        &text.replace("name = \"b\"", "name = \"b\"\nmirror = true"),
+    );
+    let frame = character(&scene).frame_of(&[0.0, 1.0]).expect("a frame");
+    // The body's middle is at 90; the head, 4 to its right, comes to be 4 to its left.
+    let columns = (0..200).filter(|x| frame.pixels[60 * 200 + x][3] >= 128);
+    let (sum, count) = columns.fold((0.0, 0.0), |(sum, count), x| (sum + x as f64 + 0.5, count + 1.0));
+    assert!((sum / count - 86.0_f64).abs() < 0.5, "{}", sum / count);
+}

@@ -91,15 +91,16 @@ fn one_more_drawing_is_one_more_pose_with_its_landmarks_and_place() {
     let landmark = "\n# A corner.\n[[landmark]]\nname = \"corner\"\nat = { tall = [12.0, 4.0], wide = [4.0, 12.0] }\n";
     let text = std::fs::read_to_string(workshop.path("scene.toml")).expect("text");
     workshop.file("scene.toml", (text + landmark).as_bytes());
-    std::fs::create_dir(workshop.path("elsewhere")).expect("a folder");
-    workshop.picture("elsewhere/square.png", |x, y| {
+    let other = Workshop::new();
+    let elsewhere = |name: &str| other.path(name).to_string_lossy().into_owned();
+    other.picture("square.png", |x, y| {
         if (10..30).contains(&x) && (11..31).contains(&y) {
             [120, 30, 120, 255]
         } else {
             [0; 4]
         }
     });
-    workshop.succeeds(&["add", "scene.toml", "elsewhere/square.png"]);
+    workshop.succeeds(&["add", "scene.toml", &elsewhere("square.png")]);
     let scene = Scene::open(&workshop.path("scene.toml")).expect("a scene");
     assert_eq!(scene.names(), ["tall", "wide", "square"]);
     let place = scene.landmarks[0].at[2].expect("carried");
@@ -115,7 +116,7 @@ fn one_more_drawing_is_one_more_pose_with_its_landmarks_and_place() {
         "{text}"
     );
     // A second one is another pose where it is told to be; a drawing that cannot be used leaves everything as it was.
-    std::fs::rename(workshop.path("elsewhere/square.png"), workshop.path("box.png")).expect("moved");
+    std::fs::copy(other.path("square.png"), workshop.path("box.png")).expect("copied");
     workshop.succeeds(&["add", "scene.toml", "box.png", "--at", "2,-1"]);
     assert_eq!(
         Scene::open(&workshop.path("scene.toml")).expect("a scene").poses[3].at,
@@ -125,8 +126,8 @@ fn one_more_drawing_is_one_more_pose_with_its_landmarks_and_place() {
         std::fs::read(workshop.path("scene.toml")).expect("bytes"),
         workshop.listing(),
     );
-    workshop.file("elsewhere/broken.png", b"no picture");
-    let refusal = workshop.fails(&["add", "scene.toml", "elsewhere/broken.png"], 1);
+    other.file("broken.png", b"no picture");
+    let refusal = workshop.fails(&["add", "scene.toml", &elsewhere("broken.png")], 1);
     assert!(refusal.contains("broken"), "{refusal}");
     assert_eq!(std::fs::read(workshop.path("scene.toml")).expect("bytes"), before);
     assert_eq!(workshop.listing(), listing);
