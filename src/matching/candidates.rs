@@ -21,8 +21,10 @@ const MOST_CANDIDATES: usize = 4;
 /// Candidates whose cost exceeds the least by more than this factor and this difference are not proposed, but for the upright one.
 const CANDIDATE_MARGIN: f32 = 1.5;
 const CANDIDATE_COST: f32 = 0.1;
-/// How far a row may move from where its candidate has it, in perimeters.
+/// How far a row may move from where its candidate has it, in perimeters, unless half of the rows say that all go further.
 const SETTLE_REACH: f64 = 0.03;
+/// Of so many rows one is asked how far all go.
+const TURN_STRIDE: usize = 8;
 
 /// Proposed matches of N closed curves to one of them.
 #[derive(Debug, Clone)]
@@ -148,11 +150,16 @@ impl RingCandidates {
                     .or(proposed.first())?;
                 let form = &self.forms[pose];
                 let mut parameters = candidate.parameters.clone();
+                let wanted = |place: &Point| Some(form.curve.normalised(carried(pose, *place)?));
+                let rows = parameters.iter().zip(&places).step_by(TURN_STRIDE);
+                let turns = rows.filter_map(|(t, place)| Some(form.curve.nearest_within(wanted(place)?, *t, 0.5) - t));
+                let turn = median(turns.collect());
+                if turn.abs() > SETTLE_REACH {
+                    parameters.iter_mut().for_each(|t| *t += turn);
+                }
                 for (t, place) in parameters.iter_mut().zip(&places) {
-                    if let Some(wanted) = carried(pose, *place) {
-                        *t = form
-                            .curve
-                            .nearest_within(form.curve.normalised(wanted), *t, SETTLE_REACH);
+                    if let Some(wanted) = wanted(place) {
+                        *t = form.curve.nearest_within(wanted, *t, SETTLE_REACH);
                     }
                 }
                 Some(closed(&model, form, parameters, &pins[pose]))
@@ -167,6 +174,11 @@ impl RingCandidates {
             options.mirror_hints,
         )
     }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// The match with these parameters, made to increase and to go through the pins exactly.

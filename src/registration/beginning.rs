@@ -12,7 +12,7 @@ use super::register::{RegistrationError, RingPairs};
 use super::rigid::Rigid;
 use super::template::{Fit, Template, Window};
 use crate::appearance::{ByteImage, PIXELS_PER_UNIT};
-use crate::math::{Matrix, Point, angle, point};
+use crate::math::{Matrix, Point, angle, point, rotation};
 
 /// A beginning is taken instead of one that turns the drawing less if its drawings differ by less than this share, less this difference.
 const CLEARLY: (f64, f64) = (0.95, 0.003);
@@ -31,6 +31,9 @@ const ALTERNATIONS: usize = 12;
 const HOPELESS: f64 = 0.03;
 /// Of so many points of an outline one is looked at.
 const SQUASH_STRIDE: usize = 4;
+/// Steps in which a round outline is turned, in radians, and the finer ones between two.
+const TURN_STEP_RAD: f64 = std::f64::consts::PI / 60.0;
+const FINE_TURNS: u8 = 6;
 /// And of a hole at most so many.
 const POINTS_OF_A_HOLE: usize = 32;
 
@@ -42,6 +45,15 @@ pub(super) struct Beginning {
     pub(super) number: usize,
 }
 
+/// What beginnings are compared by.
+struct Shown<'a> {
+    /// The reference around every vertex.
+    points: &'a Template,
+    /// The pose.
+    image: ByteImage,
+    rigid: Rigid<'a>,
+}
+
 impl Pair<'_> {
     /// The best of some beginnings; `points` are those of [`POINT_PX`].
     pub(super) fn best_beginning(
@@ -49,27 +61,81 @@ impl Pair<'_> {
         points: &Template,
         beginnings: &[RingPairs],
     ) -> Result<Beginning, RegistrationError> {
-        let (number, rings, places) = self.least_different(points, beginnings)?;
-        Ok(
-            match Affine::squashing(&rings, [self.reference.holes(), self.pose.holes()]) {
-                Some(affine) => Beginning {
-                    places: self.moved(&affine),
-                    form: affine.linear,
+        let shown = Shown {
+            points,
+            image: ByteImage::new(&self.pose.blurred(LEVELS[0].deviation_px), Window::here().reach),
+            rigid: Rigid::new(self.lattice, Matrix::identity()),
+        };
+        let (number, rings, places) = self.least_different(&shown, beginnings)?;
+        let holes = [self.reference.holes(), self.pose.holes()];
+        Ok(match Affine::squashing(&rings, holes) {
+            Some(affine) => {
+                let turned = self.turned_as_drawn(&shown, &rings, affine);
+                Beginning {
+                    places: self.moved(&turned),
+                    form: turned.linear,
                     number,
-                },
-                None => Beginning {
-                    places,
-                    form: Matrix::identity(),
-                    number,
-                },
+                }
+            }
+            None => Beginning {
+                places,
+                form: Matrix::identity(),
+                number,
             },
-        )
+        })
+    }
+
+    /// A map of the outlines turned as what is drawn says where they do not: a disc may be turned at will, and stays upright if nothing on it is
+    /// clearly better turned.
+    fn turned_as_drawn(&self, shown: &Shown, rings: &[RingPair], affine: Affine) -> Affine {
+        let difference = |affine: &Affine| {
+            let places = self.moved(affine);
+            let turned = TURNED * self.turn_rad(&places).min(FRAC_PI_2);
+            self.difference(shown, &places) * (1.0 + turned)
+        };
+        let fits = |affine: &Affine| affine.distance(rings) < SQUASHED;
+        let mut best = (difference(&affine), affine);
+        let Some(turning) = Turning::new(&affine, rings) else {
+            return affine;
+        };
+        let steps = (std::f64::consts::PI / TURN_STEP_RAD) as usize;
+        for sense in [1.0, -1.0] {
+            let turned = (1..=steps).map(|k| turning.by(sense * k as f64 * TURN_STEP_RAD));
+            for turned in turned.take_while(fits) {
+                let value = difference(&turned);
+                if value < CLEARLY.0 * best.0 - CLEARLY.1 {
+                    best = (value, turned);
+                }
+            }
+        }
+        // Between the steps.
+        let Some(turning) = Turning::new(&best.1, rings) else {
+            return best.1;
+        };
+        let shares = (1..FINE_TURNS).map(|k| f64::from(k) / f64::from(FINE_TURNS));
+        let shares = shares.flat_map(|share| [share, -share]);
+        for turned in shares.map(|share| turning.by(share * TURN_STEP_RAD)).filter(fits) {
+            let value = difference(&turned);
+            if value < best.0 {
+                best = (value, turned);
+            }
+        }
+        best.1
+    }
+
+    /// How much the drawings differ, away from the edge, where the vertices are at `places`.
+    fn difference(&self, shown: &Shown, places: &[Point]) -> f64 {
+        let frames = shown.rigid.frames(places, 1);
+        let fits = (shown.points).fits(&shown.image, places, &frames, &Window::here(), 1.0);
+        let inside = fits.into_iter().zip(self.inside);
+        let inside: Vec<Fit> = inside.filter_map(|(fit, inside)| inside.then_some(fit)).collect();
+        mean_residual(&inside)
     }
 
     /// The beginning whose drawings differ least where it has them: its number, its rings and where they put the vertices.
     fn least_different(
         &self,
-        points: &Template,
+        shown: &Shown,
         beginnings: &[RingPairs],
     ) -> Result<(usize, Vec<RingPair>, Vec<Point>), RegistrationError> {
         if let [only] = beginnings {
@@ -77,22 +143,15 @@ impl Pair<'_> {
             let places = self.spread(&rings)?;
             return Ok((0, rings, places));
         }
-        let rigid = Rigid::new(self.lattice, Matrix::identity());
-        let here = Window::here();
-        let image = ByteImage::new(&self.pose.blurred(LEVELS[0].deviation_px), here.reach);
-        let differs = |places: &[Point]| {
-            let fits = points.fits(&image, places, &rigid.frames(places, 1), &here, 1.0);
-            let inside = fits.into_iter().zip(self.inside);
-            let inside: Vec<Fit> = inside.filter_map(|(fit, inside)| inside.then_some(fit)).collect();
-            mean_residual(&inside)
-        };
         let mut best: Option<(f64, usize, Vec<RingPair>, Vec<Point>)> = None;
         for (number, beginning) in beginnings.iter().enumerate() {
             // Compared as the outlines have them, before they are stiffened: what is squashed is no worse than what is turned.
             let rings = self.in_pixels(beginning);
             let places = self.spread(&rings)?;
-            let spread = differs(&places);
-            let least = Affine::of(&rings).map_or(spread, |affine| spread.min(differs(&self.moved(&affine))));
+            let spread = self.difference(shown, &places);
+            let least = Affine::of(&rings).map_or(spread, |affine| {
+                spread.min(self.difference(shown, &self.moved(&affine)))
+            });
             let difference = least * (1.0 + TURNED * self.turn_rad(&places).min(FRAC_PI_2));
             let is_better = |least: f64| difference < CLEARLY.0 * least - CLEARLY.1;
             if best.as_ref().is_none_or(|(least, ..)| is_better(*least)) {
@@ -156,6 +215,16 @@ impl Affine {
         Self::nearest(pairs.map(|(a, b)| (*a, *b)))
     }
 
+    /// How far the reference's outlines are from the pose's in the mean, in figure units.
+    fn distance(&self, rings: &[RingPair]) -> f64 {
+        let points = rings.iter().flat_map(|ring| {
+            let points = ring.reference.iter().step_by(SQUASH_STRIDE);
+            points.filter_map(|p| nearest_on_ring(&ring.pose, self.at(*p)))
+        });
+        let (sum, count) = points.fold((0.0, 0usize), |(sum, count), (distance, _)| (sum + distance, count + 1));
+        sum / (count.max(1) as f64 * PIXELS_PER_UNIT)
+    }
+
     fn nearest(pairs: impl Iterator<Item = (Point, Point)> + Clone) -> Option<Self> {
         let count = pairs.clone().count() as f64;
         let from = pairs.clone().map(|(a, _)| a).sum::<Point>() / count;
@@ -198,6 +267,58 @@ impl Affine {
             affine = Self::nearest(pairs.iter().copied())?;
         }
         (distance < SQUASHED).then_some(affine)
+    }
+}
+
+/// The maps that are an affine one but for a turn of the reference's outline in the frame in which its area is as wide as high.
+struct Turning {
+    affine: Affine,
+    /// From that frame, and to it.
+    root: Matrix,
+    inverse: Matrix,
+}
+
+impl Turning {
+    /// `None` if the outline has no area.
+    fn new(affine: &Affine, rings: &[RingPair]) -> Option<Self> {
+        let ring = &rings.first()?.reference;
+        // Moments of the area, by triangles: those of the rim are not those of an ellipse.
+        let edges = |origin: Point| {
+            let next = ring.iter().skip(1).chain(ring.first());
+            (ring.iter().zip(next)).map(move |(a, b)| (a - origin, b - origin))
+        };
+        let start = *ring.first()?;
+        let double_area: f64 = edges(start).map(|(a, b)| point::cross(a, b)).sum();
+        let third: Point = edges(start).map(|(a, b)| (a + b) * point::cross(a, b)).sum();
+        let middle = start + third / (3.0 * double_area);
+        let moments: Matrix = edges(middle)
+            .map(|(a, b)| {
+                let sum = a + b;
+                (sum * sum.transpose() + a * a.transpose() + b * b.transpose()) * point::cross(a, b)
+            })
+            .sum();
+        let axes = moments.symmetric_eigen();
+        if axes.eigenvalues.iter().any(|moment| moment.is_nan() || *moment <= 0.0) {
+            return None;
+        }
+        let lengths = Matrix::from_diagonal(&axes.eigenvalues.map(f64::sqrt));
+        let root = axes.eigenvectors * lengths * axes.eigenvectors.transpose();
+        Some(Self {
+            affine: Affine {
+                from: middle,
+                to: affine.at(middle),
+                ..*affine
+            },
+            inverse: root.try_inverse()?,
+            root,
+        })
+    }
+
+    fn by(&self, turn_rad: f64) -> Affine {
+        Affine {
+            linear: self.affine.linear * self.root * rotation(turn_rad) * self.inverse,
+            ..self.affine
+        }
     }
 }
 
