@@ -44,8 +44,6 @@ pub struct Appearance {
     origin: Point,
     /// Working pixels a source unit.
     scale: f64,
-    /// The holes of the outline, in working pixels.
-    holes: Vec<Vec<Point>>,
 }
 
 impl Appearance {
@@ -75,11 +73,7 @@ impl Appearance {
             },
             origin,
             scale,
-            holes: Vec::new(),
         };
-        figure.holes = (outline.holes().iter())
-            .map(|hole| hole.points().iter().map(|p| figure.to_pixels(*p)).collect())
-            .collect();
         let coverage = figure.coverage(outline);
         figure.base.pixels = figure.channels(picture, &coverage);
         figure
@@ -93,12 +87,6 @@ impl Appearance {
             pixel[..3].fill(0.0);
         }
         plain
-    }
-
-    /// The holes of the outline, in working pixels.
-    #[must_use]
-    pub fn holes(&self) -> &[Vec<Point>] {
-        &self.holes
     }
 
     /// Columns and rows.

@@ -241,7 +241,7 @@ fn everywhere(landmark: &Landmark, correspondence: &Correspondence) -> Option<Ve
 }
 
 /// Puts the holes of every pose in the order of the reference's: each at the nearest place relative to its outline.
-pub(super) fn order_holes(outlines: &mut [Outline], reference: usize) -> Result<(), PipelineError> {
+fn order_holes(outlines: &mut [Outline], reference: usize) -> Result<(), PipelineError> {
     let places: Vec<Point> = match outlines.get(reference) {
         Some(outline) => outline
             .holes()

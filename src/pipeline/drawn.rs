@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::PipelineError;
-use super::boundaries::{Matched, match_refusal, order_holes};
+use super::boundaries::{Matched, match_refusal};
 use super::drawings::mirrored;
 use super::named::named_pairs;
 use crate::appearance::{Appearance, Profile};
@@ -13,6 +13,7 @@ use crate::compatible::Guide;
 use crate::input::Drawing;
 use crate::matching::{Landmark, MatchError, MatchOptions, MirrorHints, RingCandidates, RingMatch};
 use crate::math::Point;
+use crate::math::point::bounding_box;
 use crate::outline::{ArcLength, Outline, Ring};
 use crate::registration::{Explained, Pin, Registration, RingPairs, register};
 
@@ -136,7 +137,7 @@ pub(super) fn match_by_drawing(
                 reflected.is_some_and(|reflected| reflected < REFLECTED_SHARE * residual)
             });
     }
-    order_holes(outlines, reference)?;
+    order_holes(outlines, reference, &carried);
     let mut matched = Matched {
         reference,
         correspondences: vec![first.correspondence],
@@ -199,6 +200,34 @@ fn proposed(
         .flat_map_iter(|(ring, appearance)| appearance.profiles(&[ring], PROFILE_SAMPLES))
         .collect();
     RingCandidates::new(rings, &profiles, landmarks, options)
+}
+
+/// Puts the holes of every pose in the order of the reference's: each where it is nearest to where that hole is carried, the surest first. A disc that
+/// is turned has its holes elsewhere.
+fn order_holes(outlines: &mut [Outline], reference: usize, carried: &dyn Fn(usize, Point) -> Option<Point>) {
+    let middle = |hole: &Ring| bounding_box(hole.points()).map(|(low, high)| (low + high) * 0.5);
+    let own: Vec<Option<Point>> = outlines[reference].holes().iter().map(middle).collect();
+    for (pose, outline) in outlines.iter_mut().enumerate().filter(|(pose, _)| *pose != reference) {
+        let places: Vec<Option<Point>> = outline.holes().iter().map(middle).collect();
+        let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+        for (a, from) in own.iter().enumerate() {
+            let wanted = from.and_then(|from| carried(pose, from));
+            for (b, place) in places.iter().enumerate() {
+                let away = wanted
+                    .zip(*place)
+                    .map_or(f64::INFINITY, |(wanted, place)| (wanted - place).norm());
+                pairs.push((away, a, b));
+            }
+        }
+        pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+        let mut order: Vec<Option<usize>> = vec![None; own.len()];
+        for (_, a, b) in pairs {
+            if order[a].is_none() && !order.contains(&Some(b)) {
+                order[a] = Some(b);
+            }
+        }
+        *outline = outline.with_holes_in_order(&order.into_iter().flatten().collect::<Vec<_>>());
+    }
 }
 
 /// The match of a hole that fits the registration best.

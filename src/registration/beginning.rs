@@ -34,8 +34,6 @@ const SQUASH_STRIDE: usize = 4;
 /// Steps in which a round outline is turned, in radians, and the finer ones between two.
 const TURN_STEP_RAD: f64 = std::f64::consts::PI / 60.0;
 const FINE_TURNS: u8 = 6;
-/// And of a hole at most so many.
-const POINTS_OF_A_HOLE: usize = 32;
 
 /// What a registration begins with.
 pub(super) struct Beginning {
@@ -67,8 +65,7 @@ impl Pair<'_> {
             rigid: Rigid::new(self.lattice, Matrix::identity()),
         };
         let (number, rings, places) = self.least_different(&shown, beginnings)?;
-        let holes = [self.reference.holes(), self.pose.holes()];
-        Ok(match Affine::squashing(&rings, holes) {
+        Ok(match Affine::squashing(&rings) {
             Some(affine) => {
                 let turned = self.turned_as_drawn(&shown, &rings, affine);
                 Beginning {
@@ -239,26 +236,17 @@ impl Affine {
     }
 
     /// The map under which the reference's outlines *are* the pose's wherever their points go, if there is one: points in correspondence by arc
-    /// length are not yet where an affine map has them. Nearest points and the best map for them alternate (Besl and McKay 1992). The holes
-    /// have to follow if there are as many: of a disc they alone say how far it is turned.
-    fn squashing(rings: &[RingPair], [holes, holes_of_pose]: [&[Vec<Point>]; 2]) -> Option<Self> {
-        let holes = if holes.len() == holes_of_pose.len() { holes } else { &[] };
+    /// length are not yet where an affine map has them. Nearest points and the best map for them alternate (Besl and McKay 1992).
+    fn squashing(rings: &[RingPair]) -> Option<Self> {
         let mut affine = Self::of(rings)?;
         let mut distance = f64::INFINITY;
         for _ in 0..ALTERNATIONS {
-            let on_outlines = rings.iter().flat_map(|ring| {
-                let points = ring.reference.iter().step_by(SQUASH_STRIDE);
-                points.filter_map(|p| Some((*p, nearest_on_ring(&ring.pose, affine.at(*p))?.1)))
-            });
-            let nearest_hole = |p: Point| {
-                let on_holes = holes_of_pose.iter().filter_map(|hole| nearest_on_ring(hole, p));
-                on_holes.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, nearest)| nearest)
-            };
-            let on_holes = holes.iter().flat_map(|hole| {
-                let points = hole.iter().step_by(hole.len().div_ceil(POINTS_OF_A_HOLE));
-                points.filter_map(|p| Some((*p, nearest_hole(affine.at(*p))?)))
-            });
-            let pairs: Vec<(Point, Point)> = on_outlines.chain(on_holes).collect();
+            let pairs: Vec<(Point, Point)> = (rings.iter())
+                .flat_map(|ring| {
+                    let points = ring.reference.iter().step_by(SQUASH_STRIDE);
+                    points.filter_map(|p| Some((*p, nearest_on_ring(&ring.pose, affine.at(*p))?.1)))
+                })
+                .collect();
             let apart: f64 = pairs.iter().map(|(a, b)| (affine.at(*a) - b).norm()).sum();
             distance = apart / (pairs.len().max(1) as f64 * PIXELS_PER_UNIT);
             if distance > HOPELESS {
