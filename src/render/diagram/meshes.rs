@@ -18,7 +18,7 @@ const PIECES: usize = 3;
 /// Squares of the chequer along the reference's diagonal.
 const SQUARES: f64 = 24.0;
 /// The lightness of its squares, in turn.
-const LIGHTNESS: [f64; 2] = [0.72, 0.86];
+const LIGHTNESS: [f64; 2] = [0.58, 0.9];
 
 /// Draws the mesh of every pose in its cell, with the triangles of the smallest angles in that pose marked.
 pub(super) fn draw(canvas: &mut Canvas, diagram: &Diagram, cells: &[Cell]) {
