@@ -96,9 +96,15 @@ impl Pair<'_> {
             return affine;
         };
         let steps = (std::f64::consts::PI / TURN_STEP_RAD) as usize;
-        for sense in [1.0, -1.0] {
-            let turned = (1..=steps).map(|k| turning.by(sense * k as f64 * TURN_STEP_RAD));
-            for turned in turned.take_while(fits) {
+        // The smallest turns first, as long as the outline goes with them: of equal ones the least is taken.
+        let mut is_open = [true; 2];
+        for k in 1..=steps {
+            for (sense, is_open) in [1.0, -1.0].into_iter().zip(&mut is_open) {
+                let turned = turning.by(sense * k as f64 * TURN_STEP_RAD);
+                *is_open = *is_open && fits(&turned);
+                if !*is_open {
+                    continue;
+                }
                 let value = difference(&turned);
                 if value < CLEARLY.0 * best.0 - CLEARLY.1 {
                     best = (value, turned);
