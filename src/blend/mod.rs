@@ -155,6 +155,35 @@ pub struct BlendOptions {
 }
 
 impl BlendOptions {
+    /// The options with the points that `place_of` has a new number for; anchors and regions whose point has none are left out, and without
+    /// any anchor left the centroid is one.
+    #[must_use]
+    pub(crate) fn with_points_left(&self, place_of: impl Fn(usize) -> Option<usize>) -> Self {
+        let anchor = match &self.anchor {
+            Anchor::Centroid => Anchor::Centroid,
+            Anchor::Point(point) => place_of(*point).map_or(Anchor::Centroid, Anchor::Point),
+            Anchor::Soft(anchors) => {
+                let left = anchors.iter().filter_map(|anchor| {
+                    let point = place_of(anchor.point)?;
+                    Some(SoftAnchor { point, ..*anchor })
+                });
+                match left.collect::<Vec<_>>() {
+                    none if none.is_empty() => Anchor::Centroid,
+                    left => Anchor::Soft(left),
+                }
+            }
+        };
+        let regions = self.regions.iter().filter_map(|region| {
+            let point = place_of(region.point)?;
+            Some(Region { point, ..*region })
+        });
+        Self {
+            anchor,
+            regions: regions.collect(),
+            ..self.clone()
+        }
+    }
+
     /// The options with every point replaced by what `number_of` makes of its number: from landmarks to vertices.
     #[must_use]
     pub fn with_points(&self, number_of: impl Fn(usize) -> usize) -> Self {

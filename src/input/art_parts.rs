@@ -117,7 +117,7 @@ impl<'a> PieceShape<'a> {
 
 /// The piece that a subpath belongs to, and whether it lies in it.
 fn piece_of(subpath: &Subpath, pieces: &[PieceShape<'_>], slack: f64) -> (usize, bool) {
-    let on_curve: Vec<Point> = on_curve(subpath);
+    let on_curve = subpath.ends_and_middles();
     let (low, high) = point::bounding_box(&on_curve).unwrap_or_default();
     let near: Vec<usize> = (0..pieces.len())
         .filter(|&k| pieces[k].meets(low, high, slack))
@@ -134,16 +134,4 @@ fn piece_of(subpath: &Subpath, pieces: &[PieceShape<'_>], slack: f64) -> (usize,
     let distances = asked.into_iter().map(|k| (k, farthest(k)));
     let nearest = distances.min_by(|a, b| a.1.total_cmp(&b.1));
     nearest.map_or((0, true), |(piece, distance)| (piece, distance <= slack))
-}
-
-/// Points on a subpath: ends and middles of its curves.
-fn on_curve(subpath: &Subpath) -> Vec<Point> {
-    let mut points = vec![subpath.start];
-    let mut from = subpath.start;
-    for [a, b, to] in &subpath.cubics {
-        points.push((from + (a + b) * 3.0 + to) / 8.0);
-        points.push(*to);
-        from = *to;
-    }
-    points
 }

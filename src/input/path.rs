@@ -21,6 +21,18 @@ impl Subpath {
         self.cubics.last().map_or(self.start, |[_, _, end]| *end)
     }
 
+    /// Points on it: its start, and the middle and the end of every curve.
+    pub(crate) fn ends_and_middles(&self) -> Vec<Point> {
+        let mut places = vec![self.start];
+        let mut from = self.start;
+        for &[a, b, to] in &self.cubics {
+            places.push((from + (a + b) * 3.0 + to) / 8.0);
+            places.push(to);
+            from = to;
+        }
+        places
+    }
+
     /// Its start, then every curve's control points and end.
     pub fn points(&self) -> impl Iterator<Item = &Point> {
         std::iter::once(&self.start).chain(self.cubics.iter().flatten())

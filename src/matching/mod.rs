@@ -35,3 +35,4 @@ pub use landmark::Landmark;
 pub(crate) use n_way::match_rings_beside;
 pub use n_way::{MatchOptions, MatchReport, MirrorHints, PoseMatch, RingMatch, match_rings};
 pub use openings::shared_holes;
+pub(crate) use openings::surest_pairs;

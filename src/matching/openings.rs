@@ -69,9 +69,15 @@ fn pairs(from: &[HoleSignature], to: &[HoleSignature]) -> Vec<Option<usize>> {
             candidates.extend(hole.unlikeness(other).map(|cost| (cost, a, b)));
         }
     }
+    surest_pairs(candidates, [from.len(), to.len()])
+}
+
+/// For each of `count[0]` things its counterpart among `count[1]` others, the cheapest of the `candidates` (cost, thing, other) first; of equal
+/// ones the first in order.
+pub(crate) fn surest_pairs(mut candidates: Vec<(f64, usize, usize)>, count: [usize; 2]) -> Vec<Option<usize>> {
     candidates.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-    let mut found = vec![None; from.len()];
-    let mut taken = vec![false; to.len()];
+    let mut found = vec![None; count[0]];
+    let mut taken = vec![false; count[1]];
     for (_, a, b) in candidates {
         if found[a].is_none() && !taken[b] {
             (found[a], taken[b]) = (Some(b), true);

@@ -118,6 +118,23 @@ impl Outline {
         self
     }
 
+    /// The outline, and its openings, with every point mapped.
+    ///
+    /// # Errors
+    /// [`OutlineError`] if what comes of it is none.
+    pub fn map(&self, mut f: impl FnMut(Point) -> Point) -> Result<Self, OutlineError> {
+        let mut mapped = |rings: &[Ring]| -> Result<Vec<Ring>, OutlineError> {
+            let rings = rings.iter().enumerate();
+            rings
+                .map(|(ring, points)| points.map(&mut f).map_err(|_| OutlineError::NoArea { ring }))
+                .collect()
+        };
+        let mut rings = mapped(&self.rings)?;
+        let openings = mapped(&self.openings)?;
+        let holes = rings.split_off(1);
+        Ok(Self::new(rings.swap_remove(0), holes)?.with_openings(openings))
+    }
+
     /// The outline with the holes of the given indices, in that order; its other holes become openings.
     #[must_use]
     pub fn with_holes_in_order(&self, kept: &[usize]) -> Self {

@@ -18,7 +18,7 @@ use crate::math::Point;
 use crate::math::point::bounding_box;
 use crate::mesh::PointLocator;
 use crate::mesh::validity::{self, ValidityError};
-use crate::outline::{Outline, OutlineError, Ring};
+use crate::outline::{Outline, OutlineError};
 use crate::pose::{
     CarriedOutline, DragReport, HandleDeformation, HandleError, Mapping, Matching, MeshQuality, PoseSet,
 };
@@ -106,26 +106,19 @@ pub(super) fn with_copies(
         .into_iter()
         .collect::<Option<_>>()
         .ok_or_else(|| PipelineError::stage(&[], None, "a pose is a deformed copy of itself"))?;
+    // By pose, its place among those that are drawn.
+    let drawn_at: Vec<Option<usize>> = (0..poses.len())
+        .map(|pose| order.iter().position(|&p| p == pose))
+        .collect();
     for (k, landmark) in report.landmarks.iter_mut().enumerate() {
-        let given: Vec<bool> = (0..poses.len())
-            .map(|pose| {
-                order
-                    .iter()
-                    .position(|&p| p == pose)
-                    .is_some_and(|at| landmark.given[at])
-            })
+        let given = drawn_at
+            .iter()
+            .map(|at| at.is_some_and(|at| landmark.given[at]))
             .collect();
         landmark.given = given;
         landmark.at = poses.iter().map(|pose| pose.landmarks[k].clone()).collect();
     }
-    report.explained = (0..poses.len())
-        .map(|pose| {
-            order
-                .iter()
-                .position(|&p| p == pose)
-                .and_then(|at| report.explained[at])
-        })
-        .collect();
+    report.explained = drawn_at.iter().map(|at| report.explained[(*at)?]).collect();
     report.matching.poses = poses.iter().map(|pose| pose.matched.clone()).collect();
     let rows = drawn.matching.outer.rows().len();
     let rows = (0..rows)
@@ -155,16 +148,9 @@ fn shrunk(layer: &LayerSpec, pose: usize, copy: &ShrunkCopy, base: &Pose) -> Res
     let (low, high) = bounding_box(base.outline.outer().points()).unwrap_or_default();
     let middle = 0.5 * (low + high);
     let place = |p: Point| copy.to + (p - middle) * SHRUNK;
-    let refusal = |problem: String| PipelineError::stage(&layer.names(), Some(pose), problem);
-    let rings = base.outline.rings().iter().map(|ring| ring.map(place));
-    let mut rings = rings
-        .collect::<Result<Vec<Ring>, _>>()
-        .map_err(|error| refusal(error.to_string()))?;
-    let holes = rings.split_off(1);
-    let outer = rings.swap_remove(0);
     Ok(Pose {
         positions: base.positions.iter().map(|&p| place(p)).collect(),
-        outline: Outline::new(outer, holes).map_err(|error| refusal(error.to_string()))?,
+        outline: (base.outline.map(place)).map_err(|error| PipelineError::stage(&layer.names(), Some(pose), error))?,
         parameters: base.parameters.clone(),
         landmarks: (base.landmarks.iter())
             .map(|points| points.iter().map(|&p| place(p)).collect())

@@ -10,7 +10,7 @@ use crate::input::{Drawing, InputError, SvgOptions, read_svg};
 use crate::matching::shared_holes;
 use crate::math::Point;
 use crate::math::point::bounding_box;
-use crate::outline::{Outline, OutlineError, Ring};
+use crate::outline::Outline;
 
 impl DrawnPose {
     /// The drawing as it is used: reflected if the pose is. One that is not is shared, not copied.
@@ -161,23 +161,8 @@ pub(super) fn mirrored(drawing: Drawing, axis: Option<f64>) -> Result<Drawing, I
     }
     let axis = axis.unwrap_or_else(|| mirror_axis(&outline));
     picture.origin.x = axis - picture.origin.x - picture.width as f64 / picture.pixels_per_unit;
-    let reflect = |ring: &Ring| ring.map(|p| reflected(p, axis));
-    let degenerate = |_| OutlineError::NoArea { ring: 0 };
-    let outer = reflect(outline.outer()).map_err(degenerate)?;
-    let holes = outline
-        .holes()
-        .iter()
-        .map(reflect)
-        .collect::<Result<_, _>>()
-        .map_err(degenerate)?;
-    let openings = outline
-        .openings()
-        .iter()
-        .map(reflect)
-        .collect::<Result<_, _>>()
-        .map_err(degenerate)?;
     Ok(Drawing {
-        outline: Outline::new(outer, holes)?.with_openings(openings),
+        outline: outline.map(|p| reflected(p, axis))?,
         picture,
         art: art.map(|art| art.mirrored(axis)),
         notes,
@@ -189,16 +174,7 @@ pub(super) fn mirrored(drawing: Drawing, axis: Option<f64>) -> Result<Drawing, I
 
 /// The drawing moved by `shift`, its page with it.
 fn moved(drawing: Drawing, shift: Point) -> Result<Drawing, InputError> {
-    let degenerate = |_| OutlineError::NoArea { ring: 0 };
-    let all = |rings: &[Ring]| -> Result<Vec<Ring>, OutlineError> {
-        rings
-            .iter()
-            .map(|ring| ring.map(|p| p + shift).map_err(degenerate))
-            .collect()
-    };
-    let outline = &drawing.outline;
-    let outer = outline.outer().map(|p| p + shift).map_err(degenerate)?;
-    let outline = Outline::new(outer, all(outline.holes())?)?.with_openings(all(outline.openings())?);
+    let outline = drawing.outline.map(|p| p + shift)?;
     let mut picture = drawing.picture;
     picture.origin += shift;
     Ok(Drawing {
@@ -226,6 +202,7 @@ pub(super) fn reflected(p: Point, axis: f64) -> Point {
 mod tests {
     use super::*;
     use crate::input::{Canvas, Picture};
+    use crate::outline::Ring;
 
     #[test]
     fn mirroring_twice_changes_nothing_and_once_moves_pixels_with_the_outline() {

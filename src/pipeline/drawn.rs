@@ -11,7 +11,7 @@ use super::named::named_pairs;
 use crate::appearance::{Appearance, Profile};
 use crate::compatible::Guide;
 use crate::input::Drawing;
-use crate::matching::{Landmark, MatchError, MatchOptions, MirrorHints, RingCandidates, RingMatch};
+use crate::matching::{Landmark, MatchError, MatchOptions, MirrorHints, RingCandidates, RingMatch, surest_pairs};
 use crate::math::Point;
 use crate::math::point::bounding_box;
 use crate::outline::{ArcLength, Outline, Ring};
@@ -219,14 +219,8 @@ fn order_holes(outlines: &mut [Outline], reference: usize, carried: &dyn Fn(usiz
                 pairs.push((away, a, b));
             }
         }
-        pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-        let mut order: Vec<Option<usize>> = vec![None; own.len()];
-        for (_, a, b) in pairs {
-            if order[a].is_none() && !order.contains(&Some(b)) {
-                order[a] = Some(b);
-            }
-        }
-        *outline = outline.with_holes_in_order(&order.into_iter().flatten().collect::<Vec<_>>());
+        let order = surest_pairs(pairs, [own.len(), places.len()]).into_iter().flatten();
+        *outline = outline.with_holes_in_order(&order.collect::<Vec<_>>());
     }
 }
 

@@ -192,16 +192,16 @@ fn notes_on_strangers(names: &[String], reference: usize, explained: &[Option<Ex
         .filter_map(|(name, explained)| {
             let explained = explained.filter(|explained| !is_found(explained))?;
             let Explained { share, least: [from, to] } = explained;
+            let reference = &names[reference];
             Some(format!(
-                    "only {:.0} % of what pose '{}' shows is found on pose '{name}', least of all near ({:.0}, {:.0}), so that their forms alone are \
-                     matched; if it is the same character, a landmark there, on '{}' near ({:.0}, {:.0}), would help most",
-                    100.0 * share,
-                    names[reference],
-                    to.x,
-                    to.y,
-                    names[reference],
-                    from.x,
-                    from.y
+                "only {:.0} % of what pose '{reference}' shows is found on pose '{name}', least of all near ({:.0}, {:.0}), so that \
+                 their forms alone are matched; if it is the same character, a landmark there, on '{reference}' near ({:.0}, {:.0}), \
+                 would help most",
+                100.0 * share,
+                to.x,
+                to.y,
+                from.x,
+                from.y
             ))
         })
         .collect()

@@ -56,8 +56,9 @@ fn corresponding(first: &ArtElement, second: &ArtElement, diagonal: f64) -> Vec<
             .collect()
     };
     if commands(first) == commands(second) {
-        let places =
-            |element: &ArtElement| -> Vec<Point> { element.subpaths.iter().flat_map(ends_and_middles).collect() };
+        let places = |element: &ArtElement| -> Vec<Point> {
+            element.subpaths.iter().flat_map(Subpath::ends_and_middles).collect()
+        };
         return places(first)
             .into_iter()
             .zip(places(second))
@@ -71,18 +72,6 @@ fn corresponding(first: &ArtElement, second: &ArtElement, diagonal: f64) -> Vec<
         }
         _ => Vec::new(),
     }
-}
-
-/// The ends and the middles of the curves of a subpath.
-fn ends_and_middles(subpath: &Subpath) -> Vec<Point> {
-    let mut places = vec![subpath.start];
-    let mut from = subpath.start;
-    for &[a, b, to] in &subpath.cubics {
-        places.push((from + (a + b) * 3.0 + to) / 8.0);
-        places.push(to);
-        from = to;
-    }
-    places
 }
 
 /// What an element hides: nothing, or what is inside these polygons.

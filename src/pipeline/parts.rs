@@ -20,7 +20,7 @@ use super::spec::{
 use crate::blend::Reference;
 use crate::input::{Drawing, InputNote, LoosePart, PartOptions, PartRule, SvgOptions};
 use crate::math::{Point, point};
-use crate::outline::{Outline, Ring};
+use crate::outline::Outline;
 use crate::parts::{PartGroups, PartShape, group, nearest_part, origin};
 
 /// The most layers that a note names.
@@ -373,7 +373,10 @@ impl<'a> Pieces<'a> {
         let outlines = parts.into_iter().map(|part| self.outlines[drawing][part]);
         match pose.facing {
             Facing::AsDrawn => outlines.cloned().collect(),
-            Facing::Mirrored => outlines.filter_map(|outline| mirrored(outline, axis(pose))).collect(),
+            // Rounding may leave no outline.
+            Facing::Mirrored => outlines
+                .filter_map(|outline| outline.map(|p| reflected(p, axis(pose))).ok())
+                .collect(),
         }
     }
 
@@ -505,12 +508,4 @@ fn marks(layer: &LayerSpec) -> impl Iterator<Item = Vec<Option<Point>>> + '_ {
 /// Twice the x of the line about which a whole drawing is reflected.
 fn axis(pose: &DrawnPose) -> f64 {
     pose.axis.unwrap_or_else(|| mirror_axis(&pose.drawing.outline))
-}
-
-/// An outline reflected left to right; `None` if rounding leaves none.
-fn mirrored(outline: &Outline, axis: f64) -> Option<Outline> {
-    let rings = outline.rings().iter().map(|ring| ring.map(|p| reflected(p, axis)).ok());
-    let mut rings: Vec<Ring> = rings.collect::<Option<_>>()?;
-    let holes = rings.split_off(1);
-    Outline::new(rings.pop()?, holes).ok()
 }

@@ -5,13 +5,12 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::levels::LEVELS;
 use super::outline::{RingPair, nearest_on_ring, spread};
 use super::pair::Pair;
 use super::register::{RegistrationError, RingPairs};
 use super::rigid::Rigid;
 use super::template::{Fit, Template, Window};
-use crate::appearance::{ByteImage, PIXELS_PER_UNIT};
+use crate::appearance::{ByteImage, ChannelImage, PIXELS_PER_UNIT};
 use crate::math::{Matrix, Point, angle, point, rotation};
 
 /// A beginning is taken instead of one that turns the drawing less if its drawings differ by less than this share, less this difference.
@@ -53,15 +52,16 @@ struct Shown<'a> {
 }
 
 impl Pair<'_> {
-    /// The best of some beginnings; `points` are those of [`POINT_PX`].
+    /// The best of some beginnings; `points` are those of [`POINT_PX`], `coarsest` is the pose blurred as for the first level.
     pub(super) fn best_beginning(
         &self,
         points: &Template,
+        coarsest: &ChannelImage,
         beginnings: &[RingPairs],
     ) -> Result<Beginning, RegistrationError> {
         let shown = Shown {
             points,
-            image: ByteImage::new(&self.pose.blurred(LEVELS[0].deviation_px), Window::here().reach),
+            image: ByteImage::new(coarsest, Window::here().reach),
             rigid: Rigid::new(self.lattice, Matrix::identity()),
         };
         let (number, rings, places) = self.least_different(&shown, beginnings)?;
@@ -85,39 +85,38 @@ impl Pair<'_> {
     /// A map of the outlines turned as what is drawn says where they do not: a disc may be turned at will, and stays upright if nothing on it is
     /// clearly better turned.
     fn turned_as_drawn(&self, shown: &Shown, rings: &[RingPair], affine: Affine) -> Affine {
+        let Some(turning) = Turning::new(&affine, rings) else {
+            return affine;
+        };
+        let fits = |affine: &Affine| affine.distance(rings) < SQUASHED;
         let difference = |affine: &Affine| {
             let places = self.moved(affine);
             let turned = TURNED * self.turn_rad(&places).min(FRAC_PI_2);
             self.difference(shown, &places) * (1.0 + turned)
         };
-        let fits = |affine: &Affine| affine.distance(rings) < SQUASHED;
-        let mut best = (difference(&affine), affine);
-        let Some(turning) = Turning::new(&affine, rings) else {
-            return affine;
-        };
-        let steps = (std::f64::consts::PI / TURN_STEP_RAD) as usize;
+        let (mut best, mut coarse_rad) = ((difference(&affine), affine), 0.0);
         // The smallest turns first, as long as the outline goes with them: of equal ones the least is taken.
+        let steps = (std::f64::consts::PI / TURN_STEP_RAD) as usize;
         let mut is_open = [true; 2];
         for k in 1..=steps {
             for (sense, is_open) in [1.0, -1.0].into_iter().zip(&mut is_open) {
-                let turned = turning.by(sense * k as f64 * TURN_STEP_RAD);
+                let turn_rad = sense * k as f64 * TURN_STEP_RAD;
+                let turned = turning.by(turn_rad);
                 *is_open = *is_open && fits(&turned);
                 if !*is_open {
                     continue;
                 }
                 let value = difference(&turned);
                 if value < CLEARLY.0 * best.0 - CLEARLY.1 {
-                    best = (value, turned);
+                    (best, coarse_rad) = ((value, turned), turn_rad);
                 }
             }
         }
         // Between the steps.
-        let Some(turning) = Turning::new(&best.1, rings) else {
-            return best.1;
-        };
         let shares = (1..FINE_TURNS).map(|k| f64::from(k) / f64::from(FINE_TURNS));
         let shares = shares.flat_map(|share| [share, -share]);
-        for turned in shares.map(|share| turning.by(share * TURN_STEP_RAD)).filter(fits) {
+        let turned = shares.map(|share| turning.by(coarse_rad + share * TURN_STEP_RAD));
+        for turned in turned.filter(fits) {
             let value = difference(&turned);
             if value < best.0 {
                 best = (value, turned);

@@ -5,7 +5,7 @@ use super::levels::{LEVELS, Level};
 use super::register::{Pin, RegistrationError, RingPairs};
 use super::rigid::{Rigid, Targets};
 use super::template::{Fit, MOST_DIFFERENCE, Template, Window};
-use crate::appearance::{Appearance, ByteImage, PIXELS_PER_UNIT};
+use crate::appearance::{Appearance, ByteImage, ChannelImage, PIXELS_PER_UNIT};
 use crate::math::{Matrix, Point};
 
 /// A beginning is first made this stiff, beside a trust of 1 in where it is: folds that the outlines left come out.
@@ -69,13 +69,16 @@ impl<'a> Pair<'a> {
         templates: &[Template],
         beginnings: &[RingPairs],
     ) -> Result<Registered, RegistrationError> {
-        let beginning = self.best_beginning(points, beginnings)?;
+        let coarsest = self.pose.blurred(LEVELS[0].deviation_px);
+        let beginning = self.best_beginning(points, &coarsest, beginnings)?;
         let rigid = Rigid::new(self.lattice, beginning.form);
         let mut places = self.stiffened(&rigid, &beginning.places)?;
         let mut residuals = Vec::new();
+        let mut coarsest = Some(coarsest);
         for (level, template) in LEVELS.iter().zip(templates) {
+            let image = coarsest.take().unwrap_or_else(|| self.pose.blurred(level.deviation_px));
             let fits;
-            (places, fits) = self.level(level, template, &rigid, places)?;
+            (places, fits) = self.level(level, template, &image, &rigid, places)?;
             residuals = fits.iter().map(|fit| fit.residual).collect();
         }
         Ok(Registered {
@@ -124,11 +127,12 @@ impl<'a> Pair<'a> {
         &self,
         level: &Level,
         template: &Template,
+        image: &ChannelImage,
         rigid: &Rigid,
         mut places: Vec<Point>,
     ) -> Result<(Vec<Point>, Vec<Fit>), RegistrationError> {
         let window = Window::new(level.reach * PIXELS_PER_UNIT, level.step * PIXELS_PER_UNIT);
-        let image = ByteImage::new(&self.pose.blurred(level.deviation_px), window.reach);
+        let image = ByteImage::new(image, window.reach);
         let floor = Matrix::identity() * (0.25 * window.step * window.step);
         let mut fits = Vec::new();
         for _ in 0..level.iterations {

@@ -1,7 +1,7 @@
 //! Layers: parts of a character that lie in front of one another, each an N-way shape of its own.
 
 use super::settings::Scene;
-use crate::blend::{Anchor, Reference, Region, SoftAnchor};
+use crate::blend::Reference;
 use crate::math::Point;
 use crate::scene::PoseSource;
 
@@ -97,34 +97,10 @@ impl Scene {
         let kept: Vec<usize> = (0..self.landmarks.len())
             .filter(|&k| self.landmarks[k].layer == Some(layer))
             .collect();
-        let place = |index: usize| kept.iter().position(|&k| k == index);
         let mut scene = self.clone();
         scene.landmarks = kept.iter().map(|&k| self.landmarks[k].clone()).collect();
         scene.paths.retain(|path| path.layer == Some(layer));
-        scene.blend.anchor = match &self.blend.anchor {
-            Anchor::Centroid => Anchor::Centroid,
-            Anchor::Point(landmark) => place(*landmark).map_or(Anchor::Centroid, Anchor::Point),
-            Anchor::Soft(list) => {
-                let own: Vec<_> = list
-                    .iter()
-                    .filter_map(|soft| {
-                        let point = place(soft.point)?;
-                        Some(SoftAnchor { point, ..*soft })
-                    })
-                    .collect();
-                if own.is_empty() {
-                    Anchor::Centroid
-                } else {
-                    Anchor::Soft(own)
-                }
-            }
-        };
-        scene.blend.regions = (self.blend.regions.iter())
-            .filter_map(|region| {
-                let point = place(region.point)?;
-                Some(Region { point, ..*region })
-            })
-            .collect();
+        scene.blend = (self.blend).with_points_left(|index| kept.iter().position(|&k| k == index));
         scene
     }
 }

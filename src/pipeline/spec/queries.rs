@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{CharacterSpec, DrawnPose, LayerSpec, PoseShape};
-use crate::blend::{Anchor, Reference, Region, SoftAnchor};
+use crate::blend::Reference;
 
 impl CharacterSpec {
     /// The places of a layer's poses in the pose space; poses that the space lacks are left out.
@@ -125,33 +125,9 @@ impl LayerSpec {
     /// without their landmark go with it.
     #[must_use]
     pub(in crate::pipeline) fn with_landmarks(mut self, kept: &[usize], paths: &[usize]) -> Self {
-        let place = |index: usize| kept.iter().position(|&k| k == index);
         self.landmarks = kept.iter().map(|&k| self.landmarks[k].clone()).collect();
         self.paths = paths.iter().map(|&k| self.paths[k].clone()).collect();
-        self.blend.anchor = match &self.blend.anchor {
-            Anchor::Centroid => Anchor::Centroid,
-            Anchor::Point(landmark) => place(*landmark).map_or(Anchor::Centroid, Anchor::Point),
-            Anchor::Soft(list) => {
-                let own: Vec<_> = list
-                    .iter()
-                    .filter_map(|soft| {
-                        let point = place(soft.point)?;
-                        Some(SoftAnchor { point, ..*soft })
-                    })
-                    .collect();
-                if own.is_empty() {
-                    Anchor::Centroid
-                } else {
-                    Anchor::Soft(own)
-                }
-            }
-        };
-        self.blend.regions = (self.blend.regions.iter())
-            .filter_map(|region| {
-                let point = place(region.point)?;
-                Some(Region { point, ..*region })
-            })
-            .collect();
+        self.blend = (self.blend).with_points_left(|index| kept.iter().position(|&k| k == index));
         self
     }
 
