@@ -34,6 +34,7 @@ mod reach;
 mod report;
 mod sides;
 mod spec;
+mod textures;
 mod triangulation;
 mod weighting;
 
@@ -51,8 +52,8 @@ pub use reach::{Reach, ReachOptions, ShapePoint, reach, reach_landmarks, reach_n
 pub use report::{MappingReport, Stage};
 pub use spec::{
     ArtChoice, Attachment, CameraRule, CharacterSpec, DeformedCopy, DrawnPose, Facing, HandleMove, LandmarkSpec,
-    LayerRole, LayerSpec, MeshOptions, PathSpec, Places, PoseShape, PoseSpec, ShrunkCopy, SpaceSpec, SpecError,
-    SvgSource, TextureSpec, UnsharedHoles, WeightOptions,
+    LayerRole, LayerSpec, MeshOptions, PathSpec, Places, PoseShape, PoseSpec, Register, ShrunkCopy, SpaceSpec,
+    SpecError, SvgSource, TextureSpec, UnsharedHoles, WeightOptions,
 };
 pub use triangulation::{Refinement, triangulate_polygons};
 pub use weighting::{EditableWeights, checked_weights, editable_weights};

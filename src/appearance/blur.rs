@@ -2,8 +2,10 @@
 
 use crate::math::vectorised;
 
-/// Numbers a pixel: a register of eight, of which the first five are used.
+/// Numbers a pixel: a register of eight, of which the first [`CHANNELS`] are used.
 pub(crate) const LANES: usize = 8;
+/// Those that are used.
+pub(crate) const CHANNELS: usize = 5;
 /// The channels, in order: lightness, the two colour axes, ink, coverage.
 pub(crate) type Pixel = [f32; LANES];
 

@@ -21,6 +21,7 @@ mod ink;
 mod profile;
 
 pub use blur::ChannelImage;
+pub(crate) use blur::{CHANNELS, Pixel};
 pub(crate) use bytes::{ByteImage, Bytes, STEPS_PER_UNIT};
 pub use figure::{Appearance, PIXELS_PER_UNIT, SIDE_PER_UNIT};
 pub use profile::{PROFILE_CHANNELS, Profile};

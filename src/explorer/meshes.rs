@@ -64,6 +64,43 @@ pub(super) fn mesh(session: &Session) -> Result<Response, Refusal> {
     Ok(Response::binary(bytes))
 }
 
+/// `GET api/surface`: what pictures are painted on where that is not the mesh itself. It takes longer than a mesh: who only looks at meshes does not ask.
+pub(super) fn surface(session: &Session) -> Result<Response, Refusal> {
+    let shown = session.shown();
+    let bench = shown.bench()?;
+    let mut bytes = Vec::new();
+    let mut words = Words(&mut bytes);
+    for layer in 0..bench.layers().len() {
+        let Some(mesh) = bench.texture_mesh(layer).filter(|_| !bench.is_drawn_as_curves(layer)) else {
+            words.u32(0);
+            continue;
+        };
+        let rings = mesh.topology().boundary_loops();
+        words.u32(mesh.topology().vertex_count());
+        words.u32(mesh.topology().triangles().len());
+        words.u32(mesh.anchors().len());
+        words.u32(rings.len());
+        for vertex in mesh.topology().triangles().iter().flatten() {
+            words.u32(*vertex);
+        }
+        for anchors in mesh.anchors() {
+            for vertex in anchors.iter().flat_map(|anchor| anchor.vertices) {
+                words.u32(vertex);
+            }
+            for share in anchors.iter().flat_map(|anchor| anchor.shares) {
+                words.f32(share);
+            }
+        }
+        for ring in &rings {
+            words.u32(ring.len());
+            for vertex in ring {
+                words.u32(*vertex);
+            }
+        }
+    }
+    Ok(Response::binary(bytes))
+}
+
 /// `GET api/texture`.
 pub(super) fn texture(request: &Request, session: &Session) -> Result<Response, Refusal> {
     let shown = session.shown();

@@ -72,7 +72,7 @@
 //!  "pseudo_poses": [{"from": [0.8, 0.6], "at": [1, 0.9]}, ...],
 //!  "pose_space": {"provider": "biharmonic", "radial": "b-spline", "epsilon": 0.001, "bounded": false, "walls": [[[x, y], ...]]},
 //!  "blend": {"reference": "canonical", "stretch": "linear", "guard": "off"},
-//!  "texture": {"sharpness": 0.5, "blending": "plain", "drawing": "curves"},
+//!  "texture": {"sharpness": 0.5, "blending": "plain", "register": "auto", "drawing": "curves"},
 //!  "mesh": {"simplify": 0.02, "edge_length": 0.05},
 //!  "layers": [{"name": "walker", "poses": [0, 1, 2]}, ...],
 //!  "landmarks": [{"name": "nose", "layer": 0, "line": 31, "path": false, "at": {"stand": [120.5, 40], ...}}, ...],
@@ -139,6 +139,10 @@
 //!
 //! `GET api/mesh`: for each layer u32 V, T, P, R; 3 T vertex indices; P times V positions x, y (f32), in drawing units; for each of the R
 //! boundary rings (outer first) its number of vertices and the vertices.
+//!
+//! `GET api/surface`: what the pictures are painted on. For each layer u32 0 where that is its mesh; otherwise u32 V, T, P, R of a finer mesh; 3 T vertex
+//! indices; P times 3 V vertices of the layer's mesh and 3 V shares (f32): vertex k is in a pose where these carry it (at a frame: the sum over the
+//! poses, by their weights in it); R rings as above, in any order.
 //!
 //! `GET api/texture?layer=0&index=0&kind=colour|drawing&v=PICTURES`: PNG, straight alpha, of the size that the puppet says.
 //!

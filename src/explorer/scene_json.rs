@@ -3,7 +3,7 @@
 use inbetween::animation::Background;
 use inbetween::blend::{FrameGuard, Reference, Stretch};
 use inbetween::math::Point;
-use inbetween::pipeline::{ArtChoice, Facing, HandleMove, LayerShape};
+use inbetween::pipeline::{ArtChoice, Facing, HandleMove, LayerShape, Register};
 use inbetween::render::{ColourBlend, Sampling};
 use inbetween::scene::{Layout, PoseSource, Provider, Scene, Workbench};
 use inbetween::weights::{Radial, Range};
@@ -90,6 +90,7 @@ fn of(scene: &Scene, bench: Option<&Workbench>) -> Value {
         },
         "texture": {
             "sharpness": scene.texture_sharpness,
+            "register": name_of(&Register::NAMED, &scene.register),
             "blending": match scene.colour_blend { ColourBlend::Plain => "plain", ColourBlend::Linear => "linear" },
             "sampling": name_of(&Sampling::NAMED, &scene.sampling),
             "drawing": match scene.art { ArtChoice::Curves => "curves", ArtChoice::Pixels => "pixels" },

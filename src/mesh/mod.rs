@@ -1,15 +1,17 @@
-//! Triangle meshes: topology that knows only indices, geometry on given positions, point location, how far vertices can
-//! move before a triangle is turned over, validity.
+//! Triangle meshes: topology that knows only indices, geometry on given positions, point location, even subdivision, how far
+//! vertices can move before a triangle is turned over, validity.
 
 mod flattening;
 pub mod geometry;
 mod locate;
 mod mesh_point;
+mod subdivision;
 mod topology;
 pub mod validity;
 
 pub use flattening::first_flat;
 pub use locate::{Located, PointLocator};
 pub use mesh_point::MeshPoint;
+pub use subdivision::subdivided;
 pub(crate) use topology::undirected;
 pub use topology::{Topology, TopologyError, directed_edges};

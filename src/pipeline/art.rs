@@ -7,6 +7,7 @@ use super::drawings::sharpen;
 use super::layer::{LayerShape, Part, PosedLayer};
 use super::spec::{ArtChoice, TextureSpec};
 use crate::input::Drawing;
+use crate::pose::TextureMesh;
 use crate::render::drawing::{CarriedDrawing, PoseArt, VectorNode, VectorPicture};
 use crate::render::puppet::{PuppetLayer, PuppetTexture};
 use crate::render::{Camera, PaintOptions, Painter, PoseTexture, Sampling, Texture};
@@ -30,12 +31,13 @@ enum Style {
 }
 
 impl LayerArt {
-    /// The art of one layer; `notes` are added to.
+    /// The art of one layer, of pixels on `mesh`; `notes` are added to.
     pub(super) fn new(
         part: &Part<'_>,
         shape: &LayerShape,
         texture: &TextureSpec,
         drawings: &[Arc<Drawing>],
+        mesh: impl FnOnce() -> Option<Arc<TextureMesh>>,
         camera: Camera,
         samples: usize,
         notes: &mut Vec<String>,
@@ -68,7 +70,8 @@ impl LayerArt {
                     supersample: samples,
                     sampling,
                 };
-                let painter = Painter::new(mapping, textures, drawing_of.clone(), silhouette, camera, options);
+                let shown = drawing_of.clone();
+                let painter = Painter::registered(mapping, mesh(), textures, shown, silhouette, camera, options);
                 Style::Pixels(Box::new(painter))
             }
         };

@@ -29,7 +29,7 @@ pub(super) struct Boundaries {
     pub(super) outlines: Vec<Outline>,
     pub(super) matched: Matched,
     /// What the drawings show.
-    appearances: Vec<Arc<Appearance>>,
+    pub(super) appearances: Vec<Arc<Appearance>>,
     /// Where that is in every pose; `None` where nothing is drawn inside.
     pub(super) guide: Option<RegistrationGuide>,
     /// Pairs of points inside that guide the registration.

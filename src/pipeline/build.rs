@@ -10,12 +10,13 @@
 //! | boundaries | drawings, landmarks on the outline, reference, tolerance | matching and simplification |
 //! | mapping | `MappingInput`: poses, landmarks, lines, reference, mesh | the mesh of all poses |
 //! | blend | [`BlendOptions`](crate::blend::BlendOptions) of the mesh | the factorised system |
+//! | textures | the mapping | the registration of the pictures, once it was asked for |
 //! | weights | `WeightsInput`: places, [`WeightOptions`] | the factorised weights |
 //!
 //! What is cheap is made anew every time: attachments, drawing orders, the sharpness of textures. The shapes are those of a build
 //! of the same specification from nothing, to the last bit.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
 
@@ -28,13 +29,16 @@ use super::layout::placed;
 use super::mapping::map_drawings_again;
 use super::spec::{
     ArtChoice, CameraRule, CharacterSpec, DrawnPose, LandmarkSpec, LayerSpec, MeshOptions, PathSpec, Places, PoseSpec,
-    WeightOptions,
+    Register, WeightOptions,
 };
-use super::{Character, EditableWeights, MappingReport, PipelineError, checked_weights, editable_weights, landmarks};
+use super::{
+    Character, EditableWeights, MappingReport, PipelineError, checked_weights, editable_weights, landmarks, textures,
+};
 use crate::animation::Animation;
 use crate::input::Drawing;
 use crate::math::Point;
-use crate::render::Camera;
+use crate::pose::TextureMesh;
+use crate::render::{Camera, Sampling};
 use crate::weights::WeightProvider;
 
 /// A character before it is painted, made again after every change from what the change leaves alone.
@@ -60,6 +64,8 @@ struct LayerBuild {
     drawings: Arc<Vec<Arc<Drawing>>>,
     report: Arc<MappingReport>,
     boundaries: Arc<Boundaries>,
+    /// Made when it is first asked for.
+    texture_mesh: Arc<OnceLock<Option<Arc<TextureMesh>>>>,
 }
 
 /// All that the mapping of a layer depends on.
@@ -247,9 +253,21 @@ impl Build {
     pub fn draws_like(&self, other: &Self) -> bool {
         let art = |build: &Self| {
             let texture = &build.spec.texture;
-            (texture.art, texture.blending, texture.sampling)
+            (texture.art, texture.blending, texture.sampling, texture.register)
         };
         self.has_figure_of(other) && self.has_pictures_of(other) && art(self) == art(other)
+    }
+
+    /// The mesh on which the pictures of a layer are registered to one another; `None` where the mapping's own mesh carries them: nothing is drawn inside,
+    /// they are too unlike, or the specification does not want it. Made when it is first asked for.
+    #[must_use]
+    pub fn texture_mesh(&self, layer: usize) -> Option<Arc<TextureMesh>> {
+        if self.spec.texture.register == Register::Off || self.spec.texture.sampling == Sampling::Nearest {
+            return None;
+        }
+        let (of, mapping) = (&self.layers[layer], self.figure.layers[layer].mapping());
+        let made = || textures::registered(&self.spec.layers[layer], &of.boundaries, mapping).map(Arc::new);
+        of.texture_mesh.get_or_init(made).clone()
     }
 
     /// Whether frames of a layer are curves: its drawings are, and the specification wants them so.
@@ -352,6 +370,7 @@ fn built(
         drawings,
         report: Arc::new(report),
         boundaries,
+        texture_mesh: Arc::default(),
     };
     Ok((layer, shape, notes))
 }

@@ -79,6 +79,7 @@ impl Character {
                 shape,
                 &spec.texture,
                 drawings,
+                || build.texture_mesh(k),
                 camera,
                 samples,
                 &mut notes,

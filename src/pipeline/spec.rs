@@ -121,6 +121,23 @@ pub struct TextureSpec {
     pub art: ArtChoice,
     /// How colours are taken from pictures. Default: smoothly.
     pub sampling: Sampling,
+    /// Whether pictures are registered to one another below the size of the mesh's triangles. Default: they are.
+    pub register: Register,
+}
+
+/// Whether pictures are registered to one another on the mesh, so that a cross-fade shows one line where two drawings have one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Register {
+    /// Where something is drawn inside and the drawings show the same character. Pixel art, whose texels are squares, keeps to the mesh.
+    #[default]
+    Auto,
+    /// Never.
+    Off,
+}
+
+impl Register {
+    /// What each is called in scene files.
+    pub const NAMED: [(&'static str, Self); 2] = [("auto", Self::Auto), ("off", Self::Off)];
 }
 
 impl Default for TextureSpec {
@@ -130,6 +147,7 @@ impl Default for TextureSpec {
             blending: ColourBlend::default(),
             art: ArtChoice::default(),
             sampling: Sampling::default(),
+            register: Register::default(),
         }
     }
 }

@@ -8,6 +8,7 @@ mod landmark;
 mod mapping;
 mod pose_set;
 mod quality;
+mod texture_mesh;
 
 pub use carried::{CarriedOutline, CarryError};
 pub use distance::deformation_distances;
@@ -17,3 +18,4 @@ pub use landmark::{LandmarkKind, PlacedLandmark};
 pub use mapping::{Mapping, MappingError, Matching};
 pub use pose_set::{PoseSet, PoseSetError};
 pub use quality::MeshQuality;
+pub use texture_mesh::TextureMesh;

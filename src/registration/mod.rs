@@ -28,5 +28,7 @@ mod pair;
 mod register;
 mod rigid;
 mod template;
+mod textures;
 
 pub use register::{Explained, Pin, Registration, RegistrationError, RingPairs, register};
+pub use textures::{Embedded, register_textures};

@@ -14,6 +14,8 @@
 //!
 //! Cost: #samples inside times #textures that count there, #edges of the outline, #triangles a band.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::band::{BAND_ROWS, Band, BandPainter, Shown, Window, fill_unreached};
@@ -25,7 +27,7 @@ use super::sampler::whole_weights;
 use super::{Camera, Frame, Silhouette, Texture};
 use crate::math::Point;
 use crate::mesh::geometry;
-use crate::pose::Mapping;
+use crate::pose::{Mapping, TextureMesh};
 
 /// A texture that counts for less than this changes no channel by half a step and is not looked up.
 const FAINTEST_WEIGHT: f64 = 1e-3;
@@ -85,6 +87,8 @@ impl Default for PaintOptions {
 #[derive(Debug, Clone)]
 pub struct Painter {
     triangles: Vec<[usize; 3]>,
+    /// What the triangles are of, where that is not the mapping's mesh itself.
+    mesh: Option<Arc<TextureMesh>>,
     /// `None`: drawn on a pose that is not there.
     textures: Vec<Option<OnMesh>>,
     /// The texture that each pose shows.
@@ -104,6 +108,19 @@ struct OnMesh {
     area: f64,
 }
 
+impl OnMesh {
+    /// With the vertices of `triangles` at `places` of the drawing.
+    fn new(texture: Texture, triangles: &[[usize; 3]], places: &[Point]) -> Self {
+        let texels: Vec<Point> = places.iter().map(|p| texture.to_texels(*p)).collect();
+        let area = |t: &[usize; 3]| geometry::signed_area(geometry::corners(&texels, *t));
+        Self {
+            area: triangles.iter().map(area).sum(),
+            texels,
+            texture,
+        }
+    }
+}
+
 impl Painter {
     /// A painter of `mapping` seen by `camera`. Each texture is drawn on one pose; `texture_of` says which texture each pose
     /// shows. Poses that show the same one (deformed copies) need no picture of their own: the mesh warps it.
@@ -118,23 +135,35 @@ impl Painter {
         camera: Camera,
         options: PaintOptions,
     ) -> Self {
+        Self::registered(mapping, None, textures, texture_of, silhouette, camera, options)
+    }
+
+    /// As [`Self::new`], with the textures on a mesh that has their registration; it has the poses of the mapping.
+    #[must_use]
+    pub fn registered(
+        mapping: &Mapping,
+        mesh: Option<Arc<TextureMesh>>,
+        textures: Vec<PoseTexture>,
+        texture_of: Vec<usize>,
+        silhouette: Silhouette,
+        camera: Camera,
+        options: PaintOptions,
+    ) -> Self {
         let positions = mapping.poses.positions();
-        let triangles = mapping.poses.topology().triangles();
+        let triangles = match &mesh {
+            Some(mesh) => mesh.topology().triangles(),
+            None => mapping.poses.topology().triangles(),
+        };
         let bound = |of: PoseTexture| {
-            let texels: Vec<Point> = positions
-                .get(of.drawn_on)?
-                .iter()
-                .map(|p| of.texture.to_texels(*p))
-                .collect();
-            let area = |t: &[usize; 3]| geometry::signed_area(geometry::corners(&texels, *t));
-            Some(OnMesh {
-                area: triangles.iter().map(area).sum(),
-                texels,
-                texture: of.texture,
+            let positions = positions.get(of.drawn_on)?;
+            Some(match &mesh {
+                Some(mesh) => OnMesh::new(of.texture, triangles, &mesh.on_drawing(of.drawn_on, positions)),
+                None => OnMesh::new(of.texture, triangles, positions),
             })
         };
         Self {
             triangles: triangles.to_vec(),
+            mesh: mesh.clone(),
             textures: textures.into_iter().map(bound).collect(),
             texture_of,
             silhouette,
@@ -162,8 +191,10 @@ impl Painter {
     /// `texture_weights`, one a pose; those that are not positive show nothing. The background is clear.
     #[must_use]
     pub fn paint(&self, positions: &[Point], weights: &[f64], texture_weights: &[f64]) -> Frame {
+        let carried = self.mesh.as_ref().map(|mesh| mesh.at(positions, weights));
+        let vertices = carried.as_deref().unwrap_or(positions);
         if self.options.sampling == Sampling::Nearest {
-            return self.paint_nearest(positions, texture_weights);
+            return self.paint_nearest(vertices, texture_weights);
         }
         let [columns, rows] = self.camera.size();
         let mut frame = Frame::filled(columns, rows, [0; 4]);
@@ -193,7 +224,7 @@ impl Painter {
             }
         }
         let samples = self.options.supersample as f64;
-        let placed: Vec<Point> = positions
+        let placed: Vec<Point> = vertices
             .iter()
             .map(|p| (self.camera.to_pixels(*p) - shift) * samples)
             .collect();

@@ -15,7 +15,7 @@ use super::error::{SceneError, SceneProblem};
 use super::file::SceneFile;
 use super::settings::{FrameSize, Holes, InputSettings, Layout, PoseSpaceSettings, Provider, ReadingSettings, Scene};
 use crate::input::{FigureRule, PaperRule, PartRule};
-use crate::pipeline::{ArtChoice, CameraRule, MeshOptions};
+use crate::pipeline::{ArtChoice, CameraRule, MeshOptions, Register};
 use crate::render::{ColourBlend, Sampling};
 use crate::weights::{PseudoPose, Radial, Range};
 
@@ -170,6 +170,12 @@ impl Reader<'_> {
                 "[texture] sampling",
                 &Sampling::NAMED,
                 "'smooth' or 'nearest'",
+            )?,
+            register: self.choice(
+                &written.texture.register,
+                "[texture] register",
+                &Register::NAMED,
+                "'auto' or 'off'",
             )?,
             camera: self.choice(
                 &written.animation.camera,

@@ -89,6 +89,7 @@ pub(super) struct TextureTable {
     pub(super) blending: Option<Spanned<String>>,
     pub(super) drawing: Option<Spanned<String>>,
     pub(super) sampling: Option<Spanned<String>>,
+    pub(super) register: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -7,7 +7,7 @@ use crate::animation::Animation;
 use crate::blend::BlendOptions;
 use crate::input::{Extent, FigureRule, PaperRule, PartOptions, PartRule, PictureChoice};
 use crate::math::Point;
-use crate::pipeline::{ArtChoice, CameraRule, DeformedCopy, Facing, MeshOptions};
+use crate::pipeline::{ArtChoice, CameraRule, DeformedCopy, Facing, MeshOptions, Register};
 use crate::render::{ColourBlend, Sampling};
 use crate::weights::{PseudoPose, Radial, Range};
 
@@ -39,6 +39,8 @@ pub struct Scene {
     pub art: ArtChoice,
     /// How colours are taken from pictures.
     pub sampling: Sampling,
+    /// Whether pictures are registered to one another below the size of the mesh's triangles.
+    pub register: Register,
     /// What frames show.
     pub camera: CameraRule,
     /// Where the size of frames comes from.

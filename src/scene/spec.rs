@@ -192,6 +192,7 @@ impl Scene {
                 blending: self.colour_blend,
                 art: self.art,
                 sampling: self.sampling,
+                register: self.register,
             },
             camera: CameraRule::Fit,
             notes: Vec::new(),

@@ -198,7 +198,7 @@ function bentFrame(positions, inverted) {
       const points = k === store.layer ? positions : store.meshes[k].poses[Math.max(own, 0)];
       const rings = (edges[k] ?? []).map((ring) => Float32Array.from(ring.flatMap((carrier) => placed(carrier, points))));
       return {
-        opacity: own < 0 ? 0 : 1, positions: points, rings, inverted: new Uint32Array(0),
+        opacity: own < 0 ? 0 : 1, positions: points, rings, inverted: new Uint32Array(0), weights: single(layer.poses.length, Math.max(own, 0)),
         textureWeights: single(layer.textures.length, layer.texture_of[Math.max(own, 0)]),
       };
     }),

@@ -63,6 +63,7 @@ const MODULES: &[PageFile] = modules![
     "skirt.js",
     "skirted.js",
     "state.js",
+    "surface.js",
     "texels.js",
     "theme.js",
     "thumbnail.js",

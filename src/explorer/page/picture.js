@@ -2,9 +2,11 @@
 import { byId, h, onceAFrame, short } from './dom.js';
 import { curves, placeCurves } from './curves.js';
 import { emit, on, store } from './state.js';
+import { getWords } from './api.js';
 import { framesOf } from './frames.js';
 import { extentOfAll } from './geometry.js';
 import { painterOf } from './painter.js';
+import { readSurfaces, Surface } from './surface.js';
 import { drawingView, frameSize, frameView, panBy, zoomBy } from './view.js';
 import { attachHandles, drawHandles, pictureDrag } from './handles.js';
 
@@ -57,11 +59,11 @@ function draw() {
   painter.begin({ scale: view.scale * ratio, x: view.x * ratio, y: view.y * ratio });
   const inLight = store.scene.texture?.blending === 'linear';
   const accent = styled('--accent', 1);
-  under.forEach((frame) => painter.frame(frame, { opacity: 0.2, tint: [...accent.slice(0, 3), 0.45], inLight }));
+  under.forEach((frame) => paint(frame, { opacity: 0.2, tint: [...accent.slice(0, 3), 0.45], inLight }));
   const shown = handled() ?? store.frame;
   if (shown.layers.length === painter.layers.length) {
-    painter.frame(shown, { inLight });
-    if (store.view.mesh) painter.wires(shown, { line: [0.2 * 0.8, 0.33 * 0.8, 0.85 * 0.8, 0.8], wrong: [0.82, 0.18, 0.15, 1], thickness: 0.35 * ratio });
+    paint(shown, { inLight });
+    if (store.view.mesh) painter.wires(shown, store.meshes, { line: [0.2 * 0.8, 0.33 * 0.8, 0.85 * 0.8, 0.8], wrong: [0.82, 0.18, 0.15, 1], thickness: 0.35 * ratio });
   }
   drawHandles();
   const inverted = shown.inverted;
@@ -113,25 +115,35 @@ async function drawThumbnails() {
     const [low, high] = extentOfAll(shown);
     const scale = (side - 4) / Math.max(high[0] - low[0], high[1] - low[1]);
     painter.begin({ scale, x: 2 - low[0] * scale, y: 2 - low[1] * scale });
-    painter.frame(frame, { inLight: store.scene.texture?.blending === 'linear' });
+    paint(frame, { inLight: store.scene.texture?.blending === 'linear' });
     emit('thumbnail', { pose, canvas, box: [0, 0, Math.ceil((high[0] - low[0]) * scale) + 4, Math.ceil((high[1] - low[1]) * scale) + 4] });
   });
   draw();
 }
 
+/** What the pictures of each layer are painted on. */
+let surfaces = [];
+const paint = (frame, how) => painter.frame({ ...frame, layers: frame.layers.map((shape, k) => surfaces[k].carried(shape)) }, how);
+
 let loading = 0;
 /** The revision of the pictures that the painter has. */
 let pictures = null;
+/** Whether they were registered to one another. */
+let registered;
 async function load() {
   const mine = ++loading;
   const { puppet, meshes } = store;
   try {
+    const fine = getWords('surface');
     const bitmaps = pictures === puppet.pictures ? null : await Promise.all(puppet.layers.map((layer, l) => Promise.all(layer.textures.map(async (_, k) => {
       const answer = await fetch(`api/texture?layer=${l}&index=${k}&kind=colour&v=${puppet.pictures}`);
       return createImageBitmap(await answer.blob(), { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
     }))));
+    const finer = readSurfaces(await fine);
     if (mine !== loading) return;
-    painter.load(puppet, meshes, bitmaps);
+    surfaces = meshes.map((mesh, k) => new Surface(mesh, finer[k]));
+    registered = store.scene?.texture?.register;
+    painter.load(puppet, surfaces, bitmaps);
     pictures = puppet.pictures;
     loaded = puppet;
     document.documentElement.dataset.shape = puppet.shape;
@@ -201,6 +213,7 @@ badge.addEventListener('click', () => emit('toggle-mesh'));
 // What is hidden waits: while landmarks are dragged, meshes come faster than they could be loaded.
 const loadIfSeen = () => store.view.main === 'picture' && store.puppet && loaded !== store.puppet && load();
 on('shape', loadIfSeen);
+on('scene', () => loaded && store.scene?.texture && store.scene.texture.register !== registered && load());
 // At once: it is shown with the next displayed frame, not the one after.
 on('frame', draw);
 on('scene zoom theme', redraw);

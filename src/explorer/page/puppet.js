@@ -29,14 +29,14 @@ export class PuppetPainter {
     this.areas = null;
   }
 
-  /** Takes `api/puppet`, the meshes and, per layer and texture, a bitmap; without bitmaps the pictures that are there stay. */
-  load(puppet, meshes, bitmaps) {
+  /** Takes `api/puppet`, a `Surface` a layer and, per layer and texture, a bitmap; without bitmaps the pictures that are there stay. */
+  load(puppet, surfaces, bitmaps) {
     this.layers.forEach((layer) => layer.mesh.free());
     if (bitmaps) {
       this.pictures.flat().forEach((picture) => this.gl.deleteTexture(picture));
       this.pictures = bitmaps.map((layer) => layer.map((bitmap) => pictureTexture(this.gl, bitmap)));
     }
-    this.layers = puppet.layers.map((layer, k) => this.layer(layer, meshes[k], this.pictures[k]));
+    this.layers = puppet.layers.map((layer, k) => this.layer(layer, surfaces[k], this.pictures[k]));
   }
 
   layer({ textures }, mesh, pictures) {
@@ -123,8 +123,8 @@ export class PuppetPainter {
     this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
-  /** The mesh of a frame, over it. Colours are premultiplied. */
-  wires(frame, { line, wrong, thickness = 0.5 }) {
+  /** The meshes of a frame, over it. Colours are premultiplied. */
+  wires(frame, meshes, { line, wrong, thickness = 0.5 }) {
     const { gl, canvas } = this;
     const { made, at } = this.mesh;
     gl.useProgram(made);
@@ -137,14 +137,14 @@ export class PuppetPainter {
     gl.bindBuffer(gl.ARRAY_BUFFER, this.corners.buffer);
     for (const k of frame.order) {
       if (!this.layers[k]) continue;
-      const { inside } = this.layers[k].mesh;
+      const { triangles } = meshes[k];
       const { positions } = frame.layers[k];
       // Each triangle has its own corners, so that they can be told apart.
-      const corners = new Float32Array(2 * inside.length);
-      inside.forEach((vertex, to) => corners.set(positions.subarray(2 * vertex, 2 * vertex + 2), 2 * to));
+      const corners = new Float32Array(2 * triangles.length);
+      triangles.forEach((vertex, to) => corners.set(positions.subarray(2 * vertex, 2 * vertex + 2), 2 * to));
       gl.bufferData(gl.ARRAY_BUFFER, corners, gl.STREAM_DRAW);
       attribute(gl, 0, 0);
-      gl.drawArrays(gl.TRIANGLES, 0, inside.length);
+      gl.drawArrays(gl.TRIANGLES, 0, triangles.length);
     }
   }
 }

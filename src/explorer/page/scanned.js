@@ -24,10 +24,10 @@ export class ScannedPainter {
   }
 
   /** As `PuppetPainter.load`. */
-  load(puppet, meshes, bitmaps) {
+  load(puppet, surfaces, bitmaps) {
     if (bitmaps) this.pictures = bitmaps.map((layer) => layer.map((bitmap) => new Texels(bitmap)));
     this.layers = puppet.layers.map(({ textures }, k) => {
-      const mesh = meshes[k];
+      const mesh = surfaces[k];
       const skirt = new Skirt(mesh);
       return {
         skirt,
@@ -97,13 +97,14 @@ export class ScannedPainter {
   /** What is drawn is done. */
   finish() {}
 
-  /** The mesh of a frame, over it. Colours are premultiplied. */
-  wires(frame, { line, wrong, thickness = 0.5 }) {
+  /** The meshes of a frame, over it. Colours are premultiplied. */
+  wires(frame, meshes, { line, wrong, thickness = 0.5 }) {
     const { context, view: [scale, x, y] } = this;
     for (const k of frame.order) {
       if (!this.layers[k]) continue;
-      const { triangles } = this.layers[k];
-      const edges = (this.layers[k].edges ??= edgesOf(triangles));
+      const { triangles } = meshes[k];
+      if (this.layers[k].edges?.of !== triangles) this.layers[k].edges = { of: triangles, ends: edgesOf(triangles) };
+      const edges = this.layers[k].edges.ends;
       const { positions } = frame.layers[k];
       const go = (step, vertex) => context[step](positions[2 * vertex] * scale + x, positions[2 * vertex + 1] * scale + y);
       context.lineWidth = 2 * thickness;
