@@ -21,6 +21,7 @@ mod deformed;
 mod drawings;
 mod drawn;
 mod error;
+mod facing;
 mod figure;
 mod inside;
 mod landmark_path;

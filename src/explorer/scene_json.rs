@@ -123,12 +123,16 @@ pub(super) fn plane(scene: &Scene) -> Option<([f64; 2], [f64; 2])> {
 fn pose_json(scene: &Scene, bench: Option<&Workbench>, index: usize) -> Value {
     let pose = &scene.poses[index];
     let mut handles = Vec::new();
-    let mut mirror = false;
+    let mut mirror = json!(false);
     let (mut source, mut deform_of) = (Value::Null, Value::Null);
     let kind = match &pose.source {
         PoseSource::Drawn(drawn) => {
             source = drawn.file.display().to_string().into();
-            mirror = drawn.facing == Facing::Mirrored;
+            mirror = match drawn.facing {
+                Facing::AsDrawn => json!(false),
+                Facing::Mirrored => json!(true),
+                Facing::Auto => json!("auto"),
+            };
             "drawn"
         }
         PoseSource::Deformed(copy) => {

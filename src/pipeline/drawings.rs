@@ -18,7 +18,7 @@ impl DrawnPose {
     /// # Errors
     /// [`InputError`] if the reflected outline is none, for want of digits.
     pub fn as_used(&self) -> Result<Arc<Drawing>, InputError> {
-        if self.facing == Facing::AsDrawn && self.shift == Point::zeros() {
+        if self.facing != Facing::Mirrored && self.shift == Point::zeros() {
             return Ok(Arc::clone(&self.drawing));
         }
         self.placed(self.drawing.as_ref().clone()).map(Arc::new)
@@ -39,7 +39,7 @@ impl DrawnPose {
     /// A place reflected if the pose is. Its own inverse.
     fn turned(&self, place: Point) -> Point {
         match self.facing {
-            Facing::AsDrawn => place,
+            Facing::AsDrawn | Facing::Auto => place,
             Facing::Mirrored => reflected(place, self.axis.unwrap_or_else(|| mirror_axis(&self.drawing.outline))),
         }
     }
@@ -47,7 +47,7 @@ impl DrawnPose {
     /// A drawing of this pose reflected and moved as the pose says.
     fn placed(&self, drawing: Drawing) -> Result<Drawing, InputError> {
         let turned = match self.facing {
-            Facing::AsDrawn => drawing,
+            Facing::AsDrawn | Facing::Auto => drawing,
             Facing::Mirrored => mirrored(drawing, self.axis)?,
         };
         if self.shift == Point::zeros() {

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::PipelineError;
 use super::boundaries::{Matched, match_refusal};
 use super::drawings::mirrored;
+use super::facing::REFLECTED_SHARE;
 use super::named::named_pairs;
 use crate::appearance::{Appearance, Profile};
 use crate::compatible::Guide;
@@ -20,9 +21,6 @@ use crate::registration::{Explained, Pin, Registration, RingPairs, register};
 /// From this share of the reference's figure on that is found in a pose, it is the same character in the same colours: drawn anew, two thirds of one
 /// are found at least, of another an eighth at most.
 const FOUND_SHARE: f64 = 0.5;
-
-/// A drawing looks reflected if its reflection differs from the reference by less than this share of what it differs itself.
-const REFLECTED_SHARE: f64 = 0.8;
 
 /// Samples of a profile: one a row of a match.
 const PROFILE_SAMPLES: usize = 512;
@@ -175,18 +173,23 @@ fn beginnings(candidates: &RingCandidates, pose: usize) -> Vec<RingPairs> {
 }
 
 /// How much a drawing, reflected, differs from the reference where it is registered to it; `None` where it cannot be.
-fn residual_reflected(drawing: &Drawing, reference: &Ring, shown: &Arc<Appearance>) -> Option<f64> {
+pub(super) fn residual_reflected(drawing: &Drawing, reference: &Ring, shown: &Arc<Appearance>) -> Option<f64> {
     let reflected = mirrored(drawing.clone(), None).ok()?;
     let rings = [reference.clone(), reflected.outline.outer().clone()];
-    let appearances = [Arc::clone(shown), Arc::new(Appearance::new(&reflected))];
+    residual(&rings, [shown, &Arc::new(Appearance::new(&reflected))])
+}
+
+/// How much the second of two drawings differs from the first where it is registered to it; `None` where it cannot be.
+pub(super) fn residual(rings: &[Ring; 2], appearances: [&Arc<Appearance>; 2]) -> Option<f64> {
+    let appearances = appearances.map(Arc::clone);
     let options = MatchOptions {
         reference: Some(0),
         mirror_hints: MirrorHints::Skip,
         ..MatchOptions::default()
     };
-    let candidates = proposed(&rings, &appearances, &[], &options).ok()?;
-    let of_reflected = vec![Vec::new(), beginnings(&candidates, 1)];
-    let (registration, _) = register(&appearances, 0, &of_reflected, &[], None).ok()?;
+    let candidates = proposed(rings, &appearances, &[], &options).ok()?;
+    let begins = vec![Vec::new(), beginnings(&candidates, 1)];
+    let (registration, _) = register(&appearances, 0, &begins, &[], None).ok()?;
     registration.residual(1)
 }
 

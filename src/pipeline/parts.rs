@@ -165,7 +165,7 @@ impl<'a> Pieces<'a> {
                         .collect(),
                 };
                 match pose.facing {
-                    Facing::AsDrawn => shapes,
+                    Facing::AsDrawn | Facing::Auto => shapes,
                     Facing::Mirrored => shapes.into_iter().map(|shape| shape.mirrored(axis(pose))).collect(),
                 }
             })
@@ -372,7 +372,7 @@ impl<'a> Pieces<'a> {
         parts.sort_unstable();
         let outlines = parts.into_iter().map(|part| self.outlines[drawing][part]);
         match pose.facing {
-            Facing::AsDrawn => outlines.cloned().collect(),
+            Facing::AsDrawn | Facing::Auto => outlines.cloned().collect(),
             // Rounding may leave no outline.
             Facing::Mirrored => outlines
                 .filter_map(|outline| outline.map(|p| reflected(p, axis(pose))).ok())

@@ -288,6 +288,8 @@ pub enum Facing {
     AsDrawn,
     /// Reflected left to right about the middle of its outline.
     Mirrored,
+    /// As what is drawn says: [`CharacterSpec::with_facings`] settles it, and nothing is built before that.
+    Auto,
 }
 
 /// A copy of another pose whose handles are moved as rigidly as possible (NWM 3.2). It has the other's picture, and what

@@ -108,7 +108,8 @@ pub(super) struct PoseTable {
     pub(super) frame: Option<Spanned<i64>>,
     pub(super) cell: Option<Spanned<Vec<i64>>>,
     pub(super) at: Option<Spanned<Vec<f64>>>,
-    pub(super) mirror: Option<bool>,
+    /// A flag, or `auto`.
+    pub(super) mirror: Option<Spanned<Value>>,
     pub(super) turns: Option<Spanned<i64>>,
     pub(super) deform_of: Option<Spanned<String>>,
     pub(super) handles: Option<Spanned<Vec<HandleTable>>>,

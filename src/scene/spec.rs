@@ -60,7 +60,14 @@ impl Scene {
     /// # Errors
     /// As [`Self::spec`].
     pub fn layer_spec(&self, layer: usize) -> Result<LayerSpec, SceneBuildError> {
-        self.layer_with(layer, &read_drawing)
+        // Which way a pose faces, and about which line it is reflected, is a matter of all its layers.
+        if self.of_layer(layer).drawn_poses().into_iter().all(|pose| {
+            let drawing = self.of_layer(layer).drawing_of(pose);
+            drawing.is_none_or(|(_, said)| said.facing == Facing::AsDrawn)
+        }) {
+            return self.layer_with(layer, &read_drawing);
+        }
+        Ok(self.spec_with(&read_drawing)?.layers.swap_remove(layer))
     }
 
     /// The scene's character, for frames of `size` (columns, rows) with `samples` x `samples` samples a pixel.
@@ -172,11 +179,8 @@ impl Scene {
         } else {
             self.poses.iter().map(|pose| pose.draw_order.clone()).collect()
         };
-        let mut layers = layers.into_iter().collect::<Result<Vec<LayerSpec>, _>>()?;
-        if !self.layers.is_empty() {
-            reflect_together(&mut layers);
-        }
-        Ok(CharacterSpec {
+        let layers = layers.into_iter().collect::<Result<Vec<LayerSpec>, _>>()?;
+        let spec = CharacterSpec {
             layers,
             draw_orders,
             space: SpaceSpec {
@@ -196,7 +200,12 @@ impl Scene {
             },
             camera: CameraRule::Fit,
             notes: Vec::new(),
-        })
+        };
+        let mut settled = spec.with_facings();
+        if !self.layers.is_empty() {
+            reflect_together(&mut settled.layers);
+        }
+        Ok(settled)
     }
 
     /// The specification of the scene's character from its drawings as they were read: loose parts are layers, and everything lies where

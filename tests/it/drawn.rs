@@ -5,7 +5,7 @@ use std::sync::Arc;
 use inbetween::appearance::Appearance;
 use inbetween::input::{Drawing, SvgOptions, read_svg};
 use inbetween::math::Point;
-use inbetween::pipeline::{LayerSpec, PoseSpec, map_layer};
+use inbetween::pipeline::{CharacterSpec, Facing, LayerSpec, PoseShape, PoseSpec, map_layer};
 use inbetween::pose::Mapping;
 use inbetween::registration::{Pin, RingPairs, register};
 
@@ -198,14 +198,16 @@ fn another_character_is_said_to_be_one() {
     assert!(said.len() == 1 && said[0].contains("'tent'"), "{:?}", report.notes);
 }
 
+/// A figure that looks to one side: where its eye is, and how far its tail reaches to the other.
+fn looking(x: f64, tail: f64) -> Drawing {
+    drawing(&format!(
+        r##"<path d="M140 90h120v210h-120z" fill="#b64"/><path d="M{0} 280l{tail} -60v30z" fill="#642"/><circle cx="{x}" cy="130" r="12" fill="#fff"/>"##,
+        if tail > 0.0 { 255.0 } else { 145.0 }
+    ))
+}
+
 #[test]
 fn only_a_figure_whose_reflection_shows_more_looks_reflected() {
-    let looking = |x: f64, tail: f64| {
-        drawing(&format!(
-            r##"<path d="M140 90h120v210h-120z" fill="#b64"/><path d="M{0} 280l{tail} -60v30z" fill="#642"/><circle cx="{x}" cy="130" r="12" fill="#fff"/>"##,
-            if tail > 0.0 { 255.0 } else { 145.0 }
-        ))
-    };
     let hinted = |second: Drawing| {
         let poses = [looking(170.0, 70.0), second].into_iter().zip(["first", "second"]);
         let poses = poses.map(|(drawing, name)| PoseSpec::drawn(name, drawing)).collect();
@@ -214,4 +216,52 @@ fn only_a_figure_whose_reflection_shows_more_looks_reflected() {
     };
     assert!(hinted(looking(230.0, -70.0)));
     assert!(!hinted(looking(180.0, 80.0)));
+}
+
+#[test]
+fn a_figure_that_faces_the_other_way_is_reflected_if_the_specification_leaves_it_open() {
+    let layer = |seconds: [Drawing; 2]| {
+        let poses = [looking(170.0, 70.0)]
+            .into_iter()
+            .chain(seconds)
+            .zip(["first", "second", "third"]);
+        let mut poses: Vec<PoseSpec> = poses.map(|(drawing, name)| PoseSpec::drawn(name, drawing)).collect();
+        for pose in &mut poses[1..] {
+            if let PoseShape::Drawn(drawn) = &mut pose.shape {
+                drawn.facing = Facing::Auto;
+            }
+        }
+        LayerSpec::new("figure", poses)
+    };
+    let away = layer([looking(230.0, -70.0), looking(180.0, 80.0)]);
+    assert!(map_layer(&away).is_err(), "nothing is mapped before it is settled");
+    let settled = CharacterSpec::new(vec![away]).with_facings();
+    let facings: Vec<Facing> = settled.layers[0].drawn().map(|drawn| drawn.facing).collect();
+    assert_eq!(facings, [Facing::AsDrawn, Facing::Mirrored, Facing::AsDrawn]);
+    let (mapping, report) = map_layer(&settled.layers[0]).expect("a mapping");
+    assert!(mapping.check().is_ok() && !report.notes.iter().any(|note| note.contains("reflected")));
+}
+
+#[test]
+fn a_silhouette_that_faces_the_other_way_is_reflected_by_its_outline() {
+    let boot = |facing: f64| {
+        let x = |along: f64| 200.0 + facing * along;
+        drawing(&format!(
+            r##"<path d="M{} 60L{} 60L{} 200L{} 230L{} 300L{} 300z" fill="#333"/>"##,
+            x(-60.0),
+            x(10.0),
+            x(20.0),
+            x(120.0),
+            x(130.0),
+            x(-60.0)
+        ))
+    };
+    let poses = [boot(1.0), boot(-1.0)].into_iter().zip(["first", "second"]);
+    let mut poses: Vec<PoseSpec> = poses.map(|(drawing, name)| PoseSpec::drawn(name, drawing)).collect();
+    if let PoseShape::Drawn(drawn) = &mut poses[1].shape {
+        drawn.facing = Facing::Auto;
+    }
+    let settled = CharacterSpec::new(vec![LayerSpec::new("boot", poses)]).with_facings();
+    let facings: Vec<Facing> = settled.layers[0].drawn().map(|drawn| drawn.facing).collect();
+    assert_eq!(facings, [Facing::AsDrawn, Facing::Mirrored]);
 }

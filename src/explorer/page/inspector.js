@@ -99,7 +99,7 @@ function poseSection() {
     (value) => edit([{ op: 'move_pose', pose: pose.name, at: store.scene.poses[store.pose].at.map((v, k) => (k === d ? value : v)) }], `move pose '${pose.name}'`))));
   const own = section(`Pose ${pose.name}`,
     row('Place', ...place),
-    row('Mirrored', h('input', { type: 'checkbox', 'aria-label': 'Mirrored', checked: pose.mirror, disabled: pose.kind !== 'drawn', onchange: (event) => edit([{ op: 'set_pose', pose: pose.name, key: 'mirror', value: event.target.checked }], `mirror pose '${pose.name}'`) })),
+    row('Mirrored', h('input', { type: 'checkbox', 'aria-label': 'Mirrored', checked: pose.mirror === true, disabled: pose.kind !== 'drawn', onchange: (event) => edit([{ op: 'set_pose', pose: pose.name, key: 'mirror', value: event.target.checked }], `mirror pose '${pose.name}'`) })),
     pose.deform_of ? row('Bent from', h('span', {}, pose.deform_of)) : row('Drawing', h('span', { class: 'clip', title: pose.source ?? '' }, pose.source ?? '–')),
     problemsOf('pose', null, pose.name),
     h('div', { class: 'buttons' },

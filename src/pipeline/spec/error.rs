@@ -10,6 +10,14 @@ pub enum SpecError {
     /// The space has no pose.
     #[error("the pose space has no pose; give it at least one")]
     NoPose,
+    /// A drawing's facing is left open.
+    #[error("layer '{layer}', pose '{pose}': which way it faces is not settled; call `CharacterSpec::with_facings`")]
+    OpenFacing {
+        /// The layer.
+        layer: String,
+        /// The pose.
+        pose: String,
+    },
     /// A name is empty or taken.
     #[error("{kind} name '{name}' is {}; give every {kind} a name of its own", if name.is_empty() { "empty" } else { "used twice" })]
     BadName {

@@ -1,6 +1,6 @@
 //! Whether a specification is a character. It is asked once, before anything is built; the stages rely on the answer.
 
-use super::{CharacterSpec, LayerSpec, Places, PoseShape, SpaceSpec, SpecError};
+use super::{CharacterSpec, Facing, LayerSpec, Places, PoseShape, SpaceSpec, SpecError};
 use crate::math::Point;
 use crate::outline::Ring;
 
@@ -165,6 +165,12 @@ impl LayerSpec {
         }
         for (index, pose) in self.poses.iter().enumerate() {
             let (of, handles) = match &pose.shape {
+                PoseShape::Drawn(drawn) if drawn.facing == Facing::Auto => {
+                    return Err(SpecError::OpenFacing {
+                        layer: name(),
+                        pose: pose.name.clone(),
+                    });
+                }
                 PoseShape::Drawn(_) => continue,
                 PoseShape::Deformed(copy) => (copy.of, copy.handles.as_slice()),
                 PoseShape::Shrunk(copy) => (copy.of, [].as_slice()),

@@ -5,7 +5,7 @@ use toml::Spanned;
 use super::{Checked, Reader};
 use crate::math::Point;
 use crate::outline::Ring;
-use crate::pipeline::{DeformedCopy, HandleMove};
+use crate::pipeline::{DeformedCopy, Facing, HandleMove};
 use crate::scene::error::SceneProblem;
 use crate::scene::file::{HandleTable, LandmarkTable, PoseTable};
 use crate::scene::settings::{DeformedSource, ScenePose};
@@ -24,7 +24,7 @@ impl Reader<'_> {
         let surplus = [
             written.source.as_ref().map(|v| (v.span().start, "source")),
             written.element.as_ref().map(|v| (v.span().start, "element")),
-            written.mirror.filter(|mirror| *mirror).map(|_| (start, "mirror")),
+            (self.facing_of(written)? != Facing::AsDrawn).then_some((start, "mirror")),
         ];
         if let Some((at, key)) = surplus.into_iter().flatten().next() {
             return Err(self.fail(

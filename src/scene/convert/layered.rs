@@ -4,7 +4,7 @@ use toml::{Spanned, Value};
 
 use super::{Checked, Reader};
 use crate::input::{Extent, PartOptions};
-use crate::pipeline::{DeformedCopy, Facing};
+use crate::pipeline::DeformedCopy;
 use crate::scene::error::SceneProblem;
 use crate::scene::file::{LayerTable, PoseTable, SceneFile};
 use crate::scene::layers::{LayerAnchor, SceneLayer};
@@ -188,11 +188,7 @@ impl Reader<'_> {
             reading: self.reading_of(written, &scene.input.reading)?,
             parts: self.parts_of_layer(written, scene)?,
             picture: self.picture_of(written, &scene.input)?,
-            facing: if written.mirror == Some(true) {
-                Facing::Mirrored
-            } else {
-                Facing::AsDrawn
-            },
+            facing: self.facing_of(written)?,
         })))
     }
 

@@ -203,12 +203,28 @@ impl Reader<'_> {
             reading: self.reading_of(written, &input.reading)?,
             parts: self.parts_of(written, input.parts)?,
             picture: self.picture_of(written, input)?,
-            facing: if written.mirror == Some(true) {
-                Facing::Mirrored
-            } else {
-                Facing::AsDrawn
-            },
+            facing: self.facing_of(written)?,
         })
+    }
+
+    /// Whether a pose's drawing is reflected.
+    pub(super) fn facing_of(&self, written: &PoseTable) -> Checked<Facing> {
+        let Some(mirror) = &written.mirror else {
+            return Ok(Facing::AsDrawn);
+        };
+        match mirror.get_ref() {
+            Value::Boolean(false) => Ok(Facing::AsDrawn),
+            Value::Boolean(true) => Ok(Facing::Mirrored),
+            Value::String(word) if word == "auto" => Ok(Facing::Auto),
+            other => Err(self.fail(
+                mirror.span().start,
+                SceneProblem::BadChoice {
+                    key: format!("pose '{}': mirror", written.name.get_ref()),
+                    value: other.to_string(),
+                    allowed: "true, false or 'auto'",
+                },
+            )),
+        }
     }
 
     /// A source as a path that stays in the scene's folder.
