@@ -15,6 +15,7 @@ import { request } from 'node:http';
 import { basename, dirname, join, resolve } from 'node:path';
 import { conflict, keysInTime, landmarkByKeys, lines, pseudoPoses } from './edits.mjs';
 import { decodePng, difference } from './picture.mjs';
+import { placesOfMatches, placesOfPicture } from './places.mjs';
 
 const players = process.env.PLAYERS ?? '.';
 const { chromium } = createRequire(resolve(players, 'node_modules', 'none.js'))('playwright-core');
@@ -69,7 +70,11 @@ async function proofs() {
   page.on('pageerror', (error) => errors.push(error.message));
   page.on('console', (message) => message.type() === 'error' && errors.push(`${message.text()} ${message.location().url.replace(address, '')}`));
   const kept = [];
-  page.on('websocket', (socket) => (socket.url().startsWith(address.replace('http:', 'ws:')) ? kept : outside).push(socket.url()));
+  const sent = [];
+  page.on('websocket', (socket) => {
+    (socket.url().startsWith(address.replace('http:', 'ws:')) ? kept : outside).push(socket.url());
+    socket.on('framesent', ({ payload }) => sent.push(String(payload)));
+  });
   page.on('request', (asked) => !asked.url().startsWith(address) && !/^(blob|data):/.test(asked.url()) && outside.push(asked.url()));
   await page.goto(`${address}?painter=${painter}`);
   const answer = await page.evaluate(async () => (await fetch('api/scene')).json());
@@ -82,11 +87,14 @@ async function proofs() {
   if (painter === 'processor') await mixes(page);
   await pixels(page, answer, answer.poses[0].at, 'at the first pose');
   if (plane) await probe(page, answer);
+  const tools = { page, scene, check, centre, drag, drawn, edited, saved, padPoint, sent };
+  await placesOfPicture(tools);
+  await placesOfMatches(tools);
+  await drawn(page);
   if (looksOnly) return reports(outside, kept);
   await keys(page);
   if (plane) await movedPose(page, answer);
   await landmark(page);
-  const tools = { page, scene, check, centre, drag, drawn, edited, saved, padPoint };
   await landmarkByKeys(tools);
   await lines(tools);
   if (plane) await gesture(page, answer);

@@ -72,14 +72,16 @@ const tool = segments('Dragging the picture', [
 const onion = segments('Onion skin', [['off', 'None'], ['poses', 'Poses'], ['path', 'Path']], () => store.view.onion, (value) => look({ onion: value }));
 const mesh = toggle('mesh', 'Mesh (M)', () => store.view.mesh, (value) => look({ mesh: value }));
 mesh.id = 'mesh';
+const places = toggle('places', 'The place under the pointer, in all drawings (P)', () => store.view.places, (value) => look({ places: value }));
+places.id = 'show-places';
 const marks = segments('New landmarks', [['point', icon('point'), 'Points: click where it is (L)'], ['line', icon('line'), 'Lines: click from point to point (L)']], () => store.view.mark, (value) => look({ mark: value }));
 const percent = h('button', { type: 'button', class: 'percent', title: 'Actual size (Shift 0)', id: 'actual-size', onclick: actualSize });
-const ofPicture = [tool, h('span', { class: 'onion' }, icon('onion'), onion)];
+const ofPicture = [tool, h('span', { class: 'onion' }, icon('onion'), onion), places];
 byId('picture-tools').append(main, h('span', { class: 'rule' }), ...ofPicture, marks, mesh, h('span', { class: 'grow' }),
   h('span', { class: 'tools zoom' }, iconButton('minus', 'Zoom out', () => zoomBy(0.8)), percent, iconButton('plus', 'Zoom in', () => zoomBy(1.25)), iconButton('fit', 'Fit (0)', fit)));
 
 function drawView() {
-  [main, tool, onion, marks, mesh].forEach((control) => control.update());
+  [main, tool, onion, marks, mesh, places].forEach((control) => control.update());
   const matches = store.view.main === 'matches';
   [...ofPicture, byId('picture-tools').querySelector('.zoom')].forEach((element) => element.classList.toggle('hidden', matches));
   marks.classList.toggle('hidden', !matches);

@@ -3,6 +3,7 @@ import './theme.js';
 import './toasts.js';
 import './frames.js';
 import './picture.js';
+import './places.js';
 import './pad.js';
 import './weights.js';
 import './timeline.js';

@@ -67,7 +67,7 @@ function draw() {
   const inverted = shown.inverted;
   badge.classList.toggle('hidden', !(inverted > 0));
   badge.textContent = `${inverted} inverted ${inverted === 1 ? 'triangle' : 'triangles'}`;
-  canvas.setAttribute('aria-label', `The drawing at ${store.place.map((v) => short(v)).join(', ')}${inverted > 0 ? `, ${inverted} triangles inverted` : ''}`);
+  canvas.setAttribute('aria-label', `The drawing at ${store.place.map((v) => short(v)).join(', ')}${inverted > 0 ? `, ${inverted} triangles inverted` : ''}: arrow keys move a cross, whose place is told for all drawings`);
   tellWhat();
   emit('drawn');
 }
@@ -112,9 +112,10 @@ async function drawThumbnails() {
     if (shown.length === 0 || frame.layers.length !== painter.layers.length || side < 16) return;
     const [low, high] = extentOfAll(shown);
     const scale = (side - 4) / Math.max(high[0] - low[0], high[1] - low[1]);
-    painter.begin({ scale, x: 2 - low[0] * scale, y: 2 - low[1] * scale });
+    const view = { scale, x: 2 - low[0] * scale, y: 2 - low[1] * scale };
+    painter.begin(view);
     painter.frame(frame, { inLight: store.scene.texture?.blending === 'linear' });
-    emit('thumbnail', { pose, canvas, box: [0, 0, Math.ceil((high[0] - low[0]) * scale) + 4, Math.ceil((high[1] - low[1]) * scale) + 4] });
+    emit('thumbnail', { pose, canvas, view, frame, box: [0, 0, Math.ceil((high[0] - low[0]) * scale) + 4, Math.ceil((high[1] - low[1]) * scale) + 4] });
   });
   draw();
 }

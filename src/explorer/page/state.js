@@ -3,9 +3,12 @@
 // Events: `changing` (what changed is being asked for), `scene`, `state`, `shape` (meshes or pictures), `weights` (weights of the same
 // places may differ), `place` (the probe), `frame` (a frame arrived), `view` (what is shown and how), `pose` (another pose is looked
 // at), `gesture` (a path to be saved); `match` (the match arrived), `match-stale` (it is not what was edited), `layer` (the matches
-// show another one), `marks` (what is chosen or new), `held` (where it is dragged); `bent` (a frame that handles bend); `drawn` and
+// show another one), `marks` (what is chosen or new), `held` (where it is dragged); `pointed` (the point of the figure under the pointer is another); `bent` (a frame that handles bend); `drawn` and
 // `matched` (frame or match are on the screen).
 import { getJson, getWords, postJson, readMeshes, Refused } from './api.js';
+
+/** Height of a window, in CSS pixels, from which on the strip of all drawings leaves enough to the picture. */
+const ROOM_FOR_PLACES = 760;
 
 export const store = {
   /** `api/state`, `api/scene`, `api/puppet`, `api/mesh`. */
@@ -28,6 +31,7 @@ export const store = {
     onion: 'off', // or 'poses', 'path'
     mark: 'point', // or 'line': what a click on a drawing begins
     mesh: false,
+    places: innerHeight >= ROOM_FOR_PLACES, // the point under the pointer, in all drawings
     snap: false,
     compare: null, // settings shown beside the scene's own
   },
