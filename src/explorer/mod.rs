@@ -3,7 +3,7 @@
 //! The page ([`page`]) is plain HTML, CSS and JavaScript in the binary. It asks this server for everything that is computed, and
 //! tells it every edit; the server owns the scene's text, its undo and the file. Files here: [`http`] (the protocol), [`security`]
 //! (who is answered), [`server`] (connections), [`socket`] (those that stay open), [`routes`], [`session`] and [`state`] (the state), [`document`] (the scene's text, undo, saving),
-//! [`edit`] (edits of the text), [`model`] (what is computed of a scene), [`worker`] (heavy work, and the look at the disk), and
+//! [`keeping`] (scenes that were begun for drawings), [`edit`] (edits of the text), [`model`] (what is computed of a scene), [`worker`] (heavy work, and the look at the disk), and
 //! one file a group of answers.
 //!
 //! # How a page talks to it
@@ -47,7 +47,7 @@
 //! {"seq": 17,
 //!  "revisions": {"scene": 4, "weights": 9, "shape": 2, "pictures": 1},
 //!  "working": false, "dragging": false,
-//!  "saved": true, "conflict": false, "save_error": null,
+//!  "saved": true, "conflict": false, "temporary": false, "save_error": null,
 //!  "undo": "move pose 'jump'", "redo": null,
 //!  "problems": [PROBLEM, ...],
 //!  "timings": {"mapping_ms": 96.1},
@@ -57,7 +57,7 @@
 //! `api/puppet`, `api/correspondences`, frames; `pictures`: textures and drawings (their `v=`), `api/puppet`. `shape` 0: there is
 //! no mesh (a broken scene). `working`: a newer scene than the one shown is being computed. `problems` are those of the newest
 //! scene; what is shown is the last good one. `saved` is false while a drag lasts, or if the file could not be written
-//! (`save_error`). `conflict`: the file was changed outside while something here was not saved. `timings`: how long the last mapping
+//! (`save_error`). `temporary`: the scene was begun for drawings and lies in a temporary folder until `api/keep`. `conflict`: the file was changed outside while something here was not saved. `timings`: how long the last mapping
 //! took, from its edit to the new shape. `job`: see *Export*.
 //!
 //! # The scene
@@ -214,6 +214,7 @@
 //! |---|---|
 //! | `POST api/undo`, `POST api/redo` | one step; the file gets back its bytes. Answer the state; 409 if there is none |
 //! | `POST api/save` | tries again to save, after a `save_error` |
+//! | `POST api/keep {"folder": "cat"}` | writes a `temporary` scene and its drawings into a folder, relative to where `explore` was started, and goes on there; 409 if a scene or other drawings of these names are there |
 //! | `POST api/conflict {"take": "mine" \| "theirs"}` | ends a conflict: writes what is here, or reads what is there (which can be undone) |
 //!
 //! # Handles
@@ -259,6 +260,7 @@ mod grids;
 mod handles;
 mod http;
 mod jobs;
+mod keeping;
 mod meshes;
 mod model;
 mod page;
@@ -277,11 +279,21 @@ mod thinning;
 mod wire;
 mod worker;
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::sync::Arc;
 
+pub(crate) use self::keeping::{Begun, DrawingCopy};
 use self::server::Server;
 use self::session::Session;
+
+/// What is opened.
+#[derive(Debug)]
+pub(crate) enum Opened {
+    /// A scene file.
+    Scene(PathBuf),
+    /// A scene that was begun for drawings.
+    Begun(Begun),
+}
 
 /// A scene that is explored: its state and the server that answers for it.
 pub(crate) struct Explorer {
@@ -291,8 +303,11 @@ pub(crate) struct Explorer {
 
 impl Explorer {
     /// Opens a scene and listens, at `port` or a free one. A broken scene is opened as far as it can be.
-    pub(crate) fn open(file: &Path, port: Option<u16>) -> anyhow::Result<Self> {
-        let session = Arc::new(Session::open(file));
+    pub(crate) fn open(opened: Opened, port: Option<u16>) -> anyhow::Result<Self> {
+        let session = Arc::new(match opened {
+            Opened::Scene(file) => Session::open(&file),
+            Opened::Begun(begun) => Session::begun(begun),
+        });
         let server = Server::bind(port)?;
         let working = Arc::clone(&session);
         std::thread::Builder::new()

@@ -7,7 +7,7 @@ use super::document::Document;
 use super::http::{Request, Response};
 use super::problem::Refusal;
 use super::session::Session;
-use super::{correspondences, export, frames, gesture, grids, handles, meshes, scene_json};
+use super::{correspondences, export, frames, gesture, grids, handles, keeping, meshes, scene_json};
 
 /// How long the state is waited for.
 const LONGEST_WAIT: Duration = Duration::from_secs(25);
@@ -48,6 +48,7 @@ fn computed(route: &str, request: &Request, session: &Arc<Session>) -> Result<Re
         ("POST", "undo") => json(session.step(Document::undo)?),
         ("POST", "redo") => json(session.step(Document::redo)?),
         ("POST", "save") => json(session.save()),
+        ("POST", "keep") => json(keeping::keep(body, session)?),
         ("POST", "conflict") => json(session.end_conflict(body)?),
         ("POST", "deform") => handles::deform(body, session),
         ("POST", "reach") => handles::reach_place(body, session),
@@ -82,6 +83,7 @@ const ROUTES: &[&str] = &[
     "undo",
     "redo",
     "save",
+    "keep",
     "conflict",
     "deform",
     "reach",

@@ -4,6 +4,7 @@ import { byId, h } from './dom.js';
 import { iconButton, segments, toggle } from './controls.js';
 import { icon } from './icons.js';
 import { copyCommand, openExport } from './export.js';
+import { openKeep } from './keep.js';
 import { openKeys } from './keyboard.js';
 import { actualSize, fit, frameView, zoomBy } from './view.js';
 import { flipTheme, isDark } from './theme.js';
@@ -20,9 +21,10 @@ if (innerWidth < 1200) {
   app.dataset.inspector = 'closed';
   panel.update();
 }
+const save = h('button', { type: 'button', class: 'main hidden', id: 'keep', title: 'Name a folder for the scene', onclick: openKeep }, 'Save…');
 byId('bar-tools').append(undo, redo, h('span', { class: 'rule' }),
   h('button', { type: 'button', id: 'copy-command', title: 'Copy the command that draws this frame (C)', onclick: copyCommand }, icon('command'), h('span', { class: 'wide' }, 'Copy as command')),
-  h('button', { type: 'button', class: 'bordered', id: 'export', title: 'Render the animation (E)', onclick: openExport }, icon('export'), 'Export…'),
+  h('button', { type: 'button', class: 'bordered', id: 'export', title: 'Render the animation (E)', onclick: openExport }, icon('export'), 'Export…'), save,
   h('span', { class: 'rule' }), iconButton('keyboard', 'Keys', openKeys), theme, panel);
 
 const saved = byId('saved');
@@ -39,7 +41,10 @@ function drawState() {
   const [kind, text] = store.lost ? ['bad', 'The server does not answer']
     : state.save_error ? ['bad', 'Not saved']
       : state.working ? ['busy', 'Mapping…']
+        : state.temporary && state.saved ? ['busy', 'Not saved in a folder yet']
         : state.saved ? ['good', 'Saved'] : ['busy', 'Editing…'];
+  save.classList.toggle('hidden', !state.temporary);
+  byId('scene-file').textContent = state.temporary ? '' : store.scene?.file ?? '';
   saved.dataset.kind = kind;
   saved.replaceChildren(h('span', { class: 'dot' }), text);
   saved.title = state.save_error?.message ?? state.save_error ?? (state.timings?.mapping_ms ? `Last mapping: ${Math.round(state.timings.mapping_ms)} ms` : '');
@@ -96,6 +101,5 @@ on('theme', () => theme.replaceChildren(icon(isDark() ? 'sun' : 'moon')));
 theme.replaceChildren(icon(isDark() ? 'sun' : 'moon'));
 on('scene', () => {
   byId('scene-name').textContent = store.scene.name;
-  byId('scene-file').textContent = store.scene.file;
   document.title = `${store.scene.name} – inbetween`;
 });

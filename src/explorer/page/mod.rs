@@ -41,6 +41,7 @@ const MODULES: &[PageFile] = modules![
     "handles.js",
     "icons.js",
     "inspector.js",
+    "keep.js",
     "keyboard.js",
     "landmarks.js",
     "located.js",
