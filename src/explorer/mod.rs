@@ -170,6 +170,26 @@
 //! `POST api/carry {"layer": 0, "pose": "stand", "at": [x, y]}` answers `{"kind": "outline" | "inside", "poses": ["stand", ...],
 //! "at": [[x, y], ...]}`: where the present match has this point on every pose of the layer; what a new landmark begins with.
 //!
+//! # Figures
+//!
+//! `GET api/figure?layer=0&pose=2`: what was taken for the figure of a drawing, in the coordinates of its file, whether or not the pose is
+//! reflected; `layer` is one that the scene names:
+//! ```json
+//! {"name": "run", "bitmap": true,                          // `reading` does not concern SVG drawings
+//!  "taken": "lines",                                       // as what the figure of a bitmap was taken: or "alpha", "background"
+//!  "mark": "1f3a-18c2d5e9",                                // of the file: `v` of its sheet
+//!  "sheet": {"origin": [0, 0], "scale": 1, "width": 640, "height": 720},  // null if it cannot be read
+//!  "pieces": [{"role": "body", "outline": [x, y, ...], "holes": [[x, y, ...], ...]}, ...],  // or "part", "kept", "dropped"
+//!  "notes": ["the figure is what the lines enclose, with its inside"],
+//!  "reading": {"figure": "lines", "gap": 0.01, "paper": "keep", "threshold": 0.5},
+//!  "usual": {"figure": "auto", ...},                       // of poses that do not say it themselves
+//!  "own": ["figure"],                                      // what this one says itself
+//!  "keep": [[x, y], ...], "drop": [[x, y], ...],
+//!  "problem": null}                                        // PROBLEM if it cannot be read as it is said
+//! ```
+//! With `keep=X,Y` the answer is 409 if no piece is there that could be kept. `GET api/sheet?layer=0&pose=2&max=1600&v=MARK`: PNG of the
+//! drawing's whole sheet, nothing taken out.
+//!
 //! # Grids
 //!
 //! `GET api/grid?box=X0,Y0,X1,Y1&columns=64&rows=64&provider=`: weights at cell centres (as `inbetween weights --grid`): u32
@@ -208,7 +228,9 @@
 //! | `add_deformed_pose` | `name` (optional), `of`, `at`, `handles` [{`from`, `to`, `layer`}] |
 //! | `set_handles` | `pose`, `handles` |
 //! | `remove_pose` | `pose` (a copy, or a drawn pose without copies; its places in landmarks go, too) |
-//! | `set_pose` | `pose`, `key` (`mirror`, `turns`, `name`), `value` |
+//! | `set_pose` | `pose`, `key` (`mirror`, `turns`, `name`, `figure`, `gap`, `paper`, `threshold`), `value`; null removes the key |
+//! | `mark_part` | `pose`, `list` (`keep`, `drop`), `at`, in the coordinates of the file |
+//! | `unmark_part` | `pose`, `list`, `index` |
 //!
 //! | route | |
 //! |---|---|
@@ -254,6 +276,7 @@ mod document;
 mod draggers;
 mod edit;
 mod export;
+mod figures;
 mod frames;
 mod gesture;
 mod grids;

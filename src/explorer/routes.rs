@@ -7,7 +7,7 @@ use super::document::Document;
 use super::http::{Request, Response};
 use super::problem::Refusal;
 use super::session::Session;
-use super::{correspondences, export, frames, gesture, grids, handles, keeping, meshes, scene_json};
+use super::{correspondences, export, figures, frames, gesture, grids, handles, keeping, meshes, scene_json};
 
 /// How long the state is waited for.
 const LONGEST_WAIT: Duration = Duration::from_secs(25);
@@ -41,6 +41,8 @@ fn computed(route: &str, request: &Request, session: &Arc<Session>) -> Result<Re
         ("GET", "texture") => meshes::texture(request, session),
         ("GET", "drawing") => correspondences::drawing(request, session),
         ("GET", "correspondences") => correspondences::correspondences(request, session),
+        ("GET", "figure") => figures::figure(request, session),
+        ("GET", "sheet") => figures::sheet(request, session),
         ("GET", "grid") => grids::weights(request, session),
         ("GET", "validity") => grids::validity(request, session),
         ("POST", "carry") => correspondences::carry(body, session),
@@ -76,6 +78,8 @@ const ROUTES: &[&str] = &[
     "texture",
     "drawing",
     "correspondences",
+    "figure",
+    "sheet",
     "grid",
     "validity",
     "carry",

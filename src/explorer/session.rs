@@ -294,6 +294,11 @@ impl Session {
         self.read_document(&document);
     }
 
+    /// Whether the drawings' files have changed since they were read.
+    pub(super) fn is_stale(&self) -> bool {
+        self.lock().is_stale
+    }
+
     /// What is shown.
     pub(crate) fn shown(&self) -> Arc<Shown> {
         Arc::clone(&self.lock().shown)

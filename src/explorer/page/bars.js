@@ -4,10 +4,15 @@ import { byId, h } from './dom.js';
 import { iconButton, segments, toggle } from './controls.js';
 import { icon } from './icons.js';
 import { copyCommand, openExport } from './export.js';
+import { isLayered } from './figures.js';
 import { openKeep } from './keep.js';
 import { openKeys } from './keyboard.js';
 import { actualSize, fit, frameView, zoomBy } from './view.js';
 import { flipTheme, isDark } from './theme.js';
+
+/** What is said over the sheets. */
+const PARTS = 'Click on a part to leave it out or take it back, elsewhere to ask for a part.';
+const ONE_LAYER = 'One layer of each drawing; which one is chosen with the landmarks.';
 
 const app = byId('app');
 const undo = iconButton('undo', 'Undo', () => asked('undo', {}), { id: 'undo' });
@@ -70,7 +75,7 @@ function drawState() {
 
 // Over the picture.
 
-const main = segments('View', [['picture', 'Picture'], ['matches', 'Matches']], () => store.view.main, (value) => look({ main: value }));
+const main = segments('View', [['picture', 'Picture'], ['matches', 'Matches'], ['drawings', 'Drawings']], () => store.view.main, (value) => look({ main: value }));
 const tool = segments('Dragging the picture', [
   ['reach', icon('reach'), 'Pose: drag the drawing along the plane'], ['bend', icon('bend'), 'Bend: drag handles to a new pose'], ['pan', icon('hand'), 'Move the view'],
 ], () => store.view.tool, (value) => look({ tool: value }));
@@ -82,14 +87,19 @@ places.id = 'show-places';
 const marks = segments('New landmarks', [['point', icon('point'), 'Points: click where it is (L)'], ['line', icon('line'), 'Lines: click from point to point (L)']], () => store.view.mark, (value) => look({ mark: value }));
 const percent = h('button', { type: 'button', class: 'percent', title: 'Actual size (Shift 0)', id: 'actual-size', onclick: actualSize });
 const ofPicture = [tool, h('span', { class: 'onion' }, icon('onion'), onion), places];
-byId('picture-tools').append(main, h('span', { class: 'rule' }), ...ofPicture, marks, mesh, h('span', { class: 'grow' }),
+const told = h('span', { class: 'faint small clip' });
+byId('picture-tools').append(main, h('span', { class: 'rule' }), ...ofPicture, marks, mesh, told, h('span', { class: 'grow' }),
   h('span', { class: 'tools zoom' }, iconButton('minus', 'Zoom out', () => zoomBy(0.8)), percent, iconButton('plus', 'Zoom in', () => zoomBy(1.25)), iconButton('fit', 'Fit (0)', fit)));
 
 function drawView() {
   [main, tool, onion, marks, mesh, places].forEach((control) => control.update());
-  const matches = store.view.main === 'matches';
-  [...ofPicture, byId('picture-tools').querySelector('.zoom')].forEach((element) => element.classList.toggle('hidden', matches));
-  marks.classList.toggle('hidden', !matches);
+  const shown = store.view.main;
+  const zoom = byId('picture-tools').querySelector('.zoom');
+  [...ofPicture, zoom].forEach((element) => element.classList.toggle('hidden', shown !== 'picture'));
+  marks.classList.toggle('hidden', shown !== 'matches');
+  mesh.classList.toggle('hidden', shown === 'drawings');
+  told.classList.toggle('hidden', shown !== 'drawings');
+  if (store.scene) told.textContent = isLayered() ? ONE_LAYER : PARTS;
 }
 
 on('state', drawState);

@@ -9,6 +9,7 @@ import './weights.js';
 import './timeline.js';
 import { showTab } from './inspector.js';
 import './matches.js';
+import './sheets.js';
 import './landmarks.js';
 import './export.js';
 import './keyboard.js';

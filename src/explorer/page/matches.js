@@ -8,6 +8,7 @@ import { drawCell } from './marks.js';
 import { match, takeMatch } from './match.js';
 import { attachPointer, pointOnPose } from './pointed.js';
 import { emit, on, store } from './state.js';
+import { tile } from './tiling.js';
 
 const root = h('div', { class: 'matches hidden', id: 'matches' });
 byId('stage').append(root);
@@ -117,20 +118,9 @@ function zoomCell(event, cell) {
   showBox(cell, [x, y, w * factor, h_ * factor]);
 }
 
-/** As many columns as make the drawings largest. */
 function arrange() {
   if (cells.length === 0) return;
-  const [width, height] = [root.clientWidth - 24, root.clientHeight - 24];
-  const shapes = cells.map(({ box }) => box[2] / box[3]);
-  let best = [0, 1];
-  for (let columns = 1; columns <= cells.length; columns++) {
-    const rows = Math.ceil(cells.length / columns);
-    const [w, h_] = [(width - 10 * (columns - 1)) / columns - 12, (height - 10 * (rows - 1)) / rows - 42];
-    const size = Math.min(...shapes.map((shape) => Math.min(w, h_ * shape) / Math.sqrt(shape)));
-    if (size > best[0]) best = [size, columns];
-  }
-  root.style.setProperty('--columns', best[1]);
-  root.style.setProperty('--rows', Math.ceil(cells.length / best[1]));
+  tile(root, cells.map(({ box }) => box[2] / box[3]));
   cells.forEach((cell) => (cell.size = null));
   draw();
 }

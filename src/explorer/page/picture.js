@@ -45,7 +45,7 @@ function draw() {
   const background = store.scene?.animation?.background;
   paper.style.background = background && background !== 'transparent' ? background : '';
   paper.classList.toggle('hidden', !store.frame?.layers.length);
-  note.textContent = store.scene && !(store.state.revisions.shape > 0) ? 'There is no drawing yet: the scene cannot be mapped. Matches shows what can be read.' : '';
+  note.textContent = store.scene && !(store.state.revisions.shape > 0) ? 'There is no drawing yet: the scene cannot be mapped. Drawings shows what was taken for the figure of each.' : '';
   // While new meshes are on their way the last picture stays.
   if (store.frame?.layers.length && (loaded !== store.puppet || store.frame.shape !== loaded?.shape)) return;
   if (!store.frame?.layers.length) {
