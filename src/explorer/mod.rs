@@ -126,7 +126,7 @@
 //!
 //! `GET api/puppet`:
 //! ```json
-//! {"shape": 2, "pictures": 1,
+//! {"shape": 2, "pictures": 1, "nearest": false,
 //!  "layers": [{"name": "walker", "poses": [0, 1, 2], "vertices": 512, "triangles": 930,
 //!              "texture_of": [0, 1, 2],                  // per pose of the layer
 //!              "curves": false,                          // whether its frames are curves when they are rendered
@@ -140,7 +140,9 @@
 //! `GET api/mesh`: for each layer u32 V, T, P, R; 3 T vertex indices; P times V positions x, y (f32), in drawing units; for each of the R
 //! boundary rings (outer first) its number of vertices and the vertices.
 //!
-//! `GET api/texture?layer=0&index=0&kind=colour|drawing&v=PICTURES`: PNG, straight alpha, of the size that the puppet says.
+//! `GET api/texture?layer=0&index=0&kind=colour|inside|drawing&v=PICTURES`: PNG, straight alpha, of the size that the puppet says.
+//! Where `nearest` is true, frames show nearest texels: `colour` has the drawing's own pixels, `inside` is opaque where they lie inside its
+//! outline; a frame's pixel is inside where at least half of the textures' weight is.
 //!
 //! `GET api/drawing?layer=0&pose=2&max=256&v=PICTURES`: PNG of a pose's picture, scaled down so that no side exceeds `max`; there as
 //! soon as the drawing can be read, mesh or not (a copy shows its original's). Its place: `api/correspondences`, `pictures`.

@@ -395,7 +395,8 @@ impl Session {
                 if !old.is_some_and(|old| Arc::ptr_eq(old.weights(), bench.weights()) && old.has_figure_of(&bench)) {
                     revisions.weights += 1;
                 }
-                if !old.is_some_and(|old| old.has_pictures_of(&bench)) {
+                let is_sampled_alike = |old: &Workbench| old.scene().sampling == bench.scene().sampling;
+                if !old.is_some_and(|old| old.has_pictures_of(&bench) && is_sampled_alike(old)) {
                     revisions.pictures += 1;
                 }
                 if !old.is_some_and(|old| old.has_meshes_of(&bench)) {

@@ -5,7 +5,7 @@ import { emit, on, store } from './state.js';
 import { framesOf } from './frames.js';
 import { extentOfAll } from './geometry.js';
 import { painterOf } from './painter.js';
-import { drawingView, frameSize, frameView, panBy, zoomBy } from './view.js';
+import { drawingView, frameGrid, frameSize, frameView, panBy, zoomBy } from './view.js';
 import { attachHandles, drawHandles, pictureDrag } from './handles.js';
 
 const stage = byId('stage');
@@ -55,12 +55,12 @@ function draw() {
   const view = drawingView();
   store.pixel = 1 / (view.scale * ratio);
   painter.begin({ scale: view.scale * ratio, x: view.x * ratio, y: view.y * ratio });
-  const inLight = store.scene.texture?.blending === 'linear';
+  const looks = { inLight: store.scene.texture?.blending === 'linear', grid: frameGrid() };
   const accent = styled('--accent', 1);
-  under.forEach((frame) => painter.frame(frame, { opacity: 0.2, tint: [...accent.slice(0, 3), 0.45], inLight }));
+  under.forEach((frame) => painter.frame(frame, { ...looks, opacity: 0.2, tint: [...accent.slice(0, 3), 0.45] }));
   const shown = handled() ?? store.frame;
   if (shown.layers.length === painter.layers.length) {
-    painter.frame(shown, { inLight });
+    painter.frame(shown, looks);
     if (store.view.mesh) painter.wires(shown, { line: [0.2 * 0.8, 0.33 * 0.8, 0.85 * 0.8, 0.8], wrong: [0.82, 0.18, 0.15, 1], thickness: 0.35 * ratio });
   }
   drawHandles();
@@ -114,7 +114,7 @@ async function drawThumbnails() {
     const scale = (side - 4) / Math.max(high[0] - low[0], high[1] - low[1]);
     const view = { scale, x: 2 - low[0] * scale, y: 2 - low[1] * scale };
     painter.begin(view);
-    painter.frame(frame, { inLight: store.scene.texture?.blending === 'linear' });
+    painter.frame(frame, { inLight: store.scene.texture?.blending === 'linear', grid: frameGrid() });
     emit('thumbnail', { pose, canvas, view, frame, box: [0, 0, Math.ceil((high[0] - low[0]) * scale) + 4, Math.ceil((high[1] - low[1]) * scale) + 4] });
   });
   draw();
@@ -123,16 +123,21 @@ async function drawThumbnails() {
 let loading = 0;
 /** The revision of the pictures that the painter has. */
 let pictures = null;
+/** One of the pictures of a layer. */
+async function picture(layer, index, kind) {
+  const answer = await fetch(`api/texture?layer=${layer}&index=${index}&kind=${kind}&v=${store.puppet.pictures}`);
+  return createImageBitmap(await answer.blob(), { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
+}
+
 async function load() {
   const mine = ++loading;
   const { puppet, meshes } = store;
   try {
-    const bitmaps = pictures === puppet.pictures ? null : await Promise.all(puppet.layers.map((layer, l) => Promise.all(layer.textures.map(async (_, k) => {
-      const answer = await fetch(`api/texture?layer=${l}&index=${k}&kind=colour&v=${puppet.pictures}`);
-      return createImageBitmap(await answer.blob(), { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
-    }))));
+    const all = (kind) => Promise.all(puppet.layers.map((layer, l) => Promise.all(layer.textures.map((_, k) => picture(l, k, kind)))));
+    const isKnown = pictures === puppet.pictures;
+    const [bitmaps, masks] = await Promise.all([isKnown ? null : all('colour'), isKnown || !puppet.nearest ? null : all('inside')]);
     if (mine !== loading) return;
-    painter.load(puppet, meshes, bitmaps);
+    painter.load(puppet, meshes, bitmaps, masks);
     pictures = puppet.pictures;
     loaded = puppet;
     document.documentElement.dataset.shape = puppet.shape;
