@@ -1,36 +1,55 @@
 //! `inbetween explore`.
 
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::Context as _;
+use inbetween::export::PendingFile;
+use inbetween::scene::scene_text;
 
+use super::new::{self, Copy};
 use super::{Failure, Verbosity};
-use crate::explorer;
+use crate::explorer::{Begun, DrawingCopy, Explorer, Opened};
 
-/// Open a scene in the browser: drag through its pose space, edit it, record a gesture
+/// Open a scene, or drawings, in the browser: drag through the pose space, edit it, record a gesture
 ///
 /// Serves an interactive page on this machine alone, at an address with a secret in it, until it is stopped (Ctrl-C).
-/// Edits made there are saved to the scene file; its comments stay.
+/// Edits made there are saved to the scene file; its comments stay. Given drawings, it begins a scene for them as `new` does, in a
+/// temporary folder and not beside them: nothing else is written until "Save…" in the page names a folder. Until then the drawings are
+/// looked at where they are, and changes to them are shown.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   inbetween explore walker/scene.toml
+  inbetween explore walker/*.png
   inbetween explore walker/scene.toml --port 8000 --no-open")]
 pub(crate) struct Arguments {
-    /// The scene file
-    scene: PathBuf,
-    /// The port to listen at; a free one otherwise
-    #[arg(long, value_name = "P", value_parser = clap::value_parser!(u16).range(1..))]
-    port: Option<u16>,
+    /// The scene file; or drawings, a pose each: PNG, JPEG, WebP, GIF, BMP, TIFF or SVG
+    #[arg(required = true, value_name = "SCENE|DRAWING")]
+    paths: Vec<PathBuf>,
+    /// The port to listen at; 0, the default, is any free one
+    #[arg(long, value_name = "P", default_value_t = 0)]
+    port: u16,
     /// Print the address and do not open a browser
     #[arg(long)]
     no_open: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
-    let explorer = explorer::Explorer::open(&arguments.scene, arguments.port)?;
+    let opened = match arguments.paths.as_slice() {
+        [scene] if !new::is_drawing(scene) => Opened::Scene(scene.clone()),
+        drawings => match drawings.iter().find(|path| !new::is_drawing(path)) {
+            Some(other) => {
+                return Err(Failure::Usage(format!(
+                    "{} is no drawing; give one scene file, or drawings alone",
+                    other.display()
+                )));
+            }
+            None => Opened::Begun(begin(drawings, verbosity)?),
+        },
+    };
+    let explorer = Explorer::open(opened, Some(arguments.port).filter(|port| *port != 0))?;
     let address = explorer.address();
     let mut standard = std::io::stdout().lock();
     writeln!(standard, "{address}")
@@ -42,6 +61,55 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     }
     explorer.run();
     Ok(())
+}
+
+/// Begins a scene for some drawings, in a temporary folder. Its poses have no places of their own: they are laid out when they are mapped.
+fn begin(drawings: &[PathBuf], verbosity: Verbosity) -> anyhow::Result<Begun> {
+    let temporary = tempfile::Builder::new()
+        .prefix("inbetween-")
+        .tempdir()
+        .context("cannot make a temporary folder")?;
+    // A scene is called by its folder.
+    let name = drawings.first().and_then(|drawing| folder_name(drawing));
+    let dir = temporary.path().join(name.as_deref().unwrap_or("drawings"));
+    std::fs::create_dir(&dir).with_context(|| format!("cannot make the folder {}", dir.display()))?;
+    let plan = new::plan(&new::Arguments {
+        dir: dir.clone(),
+        poses: drawings.to_vec(),
+        cells: None,
+        force: false,
+    })?;
+    for note in &plan.notes {
+        verbosity.note(&format!("note: {note}"));
+    }
+    let mut copies = Vec::new();
+    for Copy {
+        original,
+        bytes,
+        target,
+    } in plan.copies
+    {
+        PendingFile::write_whole(&target, &bytes)?;
+        copies.push(DrawingCopy::new(original, target));
+    }
+    let file = dir.join("scene.toml");
+    PendingFile::write_whole(&file, scene_text(&plan.poses).as_bytes())?;
+    verbosity.note(&format!(
+        "note: the scene is in {} until it is saved in the page",
+        dir.display()
+    ));
+    Ok(Begun {
+        file,
+        // It outlives this process, which may be ended at any time, so that no work is lost.
+        temporary: temporary.keep(),
+        copies,
+    })
+}
+
+/// What the folder of a drawing is called.
+fn folder_name(drawing: &Path) -> Option<String> {
+    let whole = drawing.canonicalize().ok()?;
+    Some(whole.parent()?.file_name()?.to_str()?.to_owned())
 }
 
 /// Hands the address to the system's browser.

@@ -28,22 +28,23 @@ const SUFFIXES: [&str; 10] = ["png", "apng", "jpg", "jpeg", "webp", "gif", "bmp"
 )]
 pub(crate) struct Arguments {
     /// The folder of the scene; made if it does not exist
-    dir: PathBuf,
+    pub(super) dir: PathBuf,
     /// The drawings: PNG, JPEG, WebP, GIF, BMP, TIFF or SVG
     #[arg(required = true, value_name = "POSE")]
-    poses: Vec<PathBuf>,
+    pub(super) poses: Vec<PathBuf>,
     /// Sheets: how many columns and rows of cells each drawing has, such as 4x2; a pose for every cell that is not empty
     #[arg(long, value_name = "COLSxROWS")]
-    cells: Option<Grid>,
+    pub(super) cells: Option<Grid>,
     /// Write over the scene file and the drawings of an earlier run
     #[arg(long)]
-    force: bool,
+    pub(super) force: bool,
 }
 
 /// A drawing that has to be copied, and where to.
-struct Copy {
-    bytes: Vec<u8>,
-    target: PathBuf,
+pub(super) struct Copy {
+    pub(super) original: PathBuf,
+    pub(super) bytes: Vec<u8>,
+    pub(super) target: PathBuf,
 }
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
@@ -91,14 +92,24 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
 }
 
 /// What a scene is made of, before anything is written.
-struct Plan {
-    poses: Vec<NewPose>,
-    copies: Vec<Copy>,
+pub(super) struct Plan {
+    pub(super) poses: Vec<NewPose>,
+    pub(super) copies: Vec<Copy>,
     /// What is left out of animated files and sheets.
-    notes: Vec<String>,
+    pub(super) notes: Vec<String>,
 }
 
-fn plan(arguments: &Arguments) -> anyhow::Result<Plan> {
+/// Whether a file is a drawing, by its name.
+pub(super) fn is_drawing(path: &Path) -> bool {
+    SUFFIXES.contains(&suffix(path).as_str())
+}
+
+fn suffix(path: &Path) -> String {
+    let suffix = path.extension().map(|s| s.to_string_lossy().to_lowercase());
+    suffix.unwrap_or_default()
+}
+
+pub(super) fn plan(arguments: &Arguments) -> anyhow::Result<Plan> {
     let folder = arguments.dir.canonicalize().ok();
     let mut poses: Vec<NewPose> = Vec::new();
     let mut copies: Vec<Copy> = Vec::new();
@@ -106,11 +117,7 @@ fn plan(arguments: &Arguments) -> anyhow::Result<Plan> {
     let mut paths: Vec<&PathBuf> = arguments.poses.iter().collect();
     paths.sort_by_cached_key(|path| natural_key(path));
     for path in paths {
-        let suffix = path
-            .extension()
-            .map(|s| s.to_string_lossy().to_lowercase())
-            .unwrap_or_default();
-        if !SUFFIXES.contains(&suffix.as_str()) {
+        if !is_drawing(path) {
             bail!(
                 "{} is no drawing; give files that end in {}",
                 path.display(),
@@ -134,6 +141,7 @@ fn plan(arguments: &Arguments) -> anyhow::Result<Plan> {
                     );
                 }
                 copies.push(Copy {
+                    original: whole,
                     bytes: std::fs::read(path)
                         .with_context(|| format!("cannot read the drawing {}", path.display()))?,
                     target,
@@ -175,10 +183,7 @@ fn plan(arguments: &Arguments) -> anyhow::Result<Plan> {
 /// What of a drawing's file are poses: the frames of an animated one, the cells of a sheet, row by row; those in which nothing is drawn,
 /// or what an earlier one has, are left out and told of.
 fn pictures_of(path: &Path, cells: Option<Grid>, notes: &mut Vec<String>) -> anyhow::Result<Vec<PictureChoice>> {
-    let is_svg = path
-        .extension()
-        .is_some_and(|suffix| suffix.eq_ignore_ascii_case("svg"));
-    if is_svg {
+    if suffix(path) == "svg" {
         return match cells {
             None => Ok(vec![PictureChoice::Only]),
             Some(_) => bail!("{}: an SVG file has no cells; leave out --cells", path.display()),
@@ -235,7 +240,8 @@ fn pictures_of(path: &Path, cells: Option<Grid>, notes: &mut Vec<String>) -> any
 
 fn write(copies: &[Copy], scene_file: &Path, poses: &mut [NewPose], verbosity: Verbosity) -> anyhow::Result<()> {
     for copy in copies {
-        PendingFile::write_whole(&copy.target, &copy.bytes)?;
+        PendingFile::write_whole(&copy.target, &copy.bytes)
+            .with_context(|| format!("cannot copy the drawing {}", copy.original.display()))?;
     }
     let scene = Scene::parse(&scene_text(poses), scene_file)?;
     let places = match Build::new(&scene.spec()?) {

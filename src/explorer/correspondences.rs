@@ -23,7 +23,7 @@ use super::session::Session;
 /// Samples along the outlines that a request may ask for.
 const MOST_SAMPLES: usize = 4096;
 /// The longest side of a picture that is sent.
-const LONGEST_SIDE: usize = 4096;
+pub(super) const LONGEST_SIDE: usize = 4096;
 
 fn flat(points: &[Point]) -> Vec<f64> {
     points.iter().flat_map(|p| [p.x, p.y]).collect()
@@ -49,7 +49,7 @@ pub(super) fn correspondences(request: &Request, session: &Session) -> Result<Re
     Ok(Response::json(&unmatched(scene, layer)))
 }
 
-fn outline_json(outline: &Outline) -> (Value, Value) {
+pub(super) fn outline_json(outline: &Outline) -> (Value, Value) {
     let holes: Vec<Vec<f64>> = outline.holes().iter().map(|hole| flat(hole.points())).collect();
     (flat(outline.outer().points()).into(), json!(holes))
 }
@@ -65,7 +65,7 @@ fn mark_of(outline: &Outline) -> String {
     format!("{:016x}", hasher.finish())
 }
 
-fn picture_json(picture: &Picture) -> Value {
+pub(super) fn picture_json(picture: &Picture) -> Value {
     json!({
         "origin": pair(picture.origin), "scale": picture.pixels_per_unit,
         "width": picture.width, "height": picture.height,
@@ -223,7 +223,7 @@ pub(super) fn drawing(request: &Request, session: &Session) -> Result<Response, 
 }
 
 /// A picture none of whose sides is longer: each pixel the mean of a square of them.
-fn smaller(picture: &Picture, longest: usize) -> Frame {
+pub(super) fn smaller(picture: &Picture, longest: usize) -> Frame {
     let times = picture.width.max(picture.height).div_ceil(longest).max(1);
     let (width, height) = (picture.width.div_ceil(times), picture.height.div_ceil(times));
     let mut frame = Frame::filled(width, height, [0; 4]);

@@ -35,6 +35,16 @@ pub(crate) struct Document {
     future: Vec<Step>,
     save_error: Option<String>,
     is_in_conflict: bool,
+    place: Place,
+}
+
+/// Where the file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// Where the artist wants it.
+    Kept,
+    /// In a temporary folder, until the artist names another.
+    Temporary,
 }
 
 /// What a look at the disk found.
@@ -50,7 +60,7 @@ pub(crate) enum Outside {
 
 impl Document {
     /// Opens a file. If it cannot be read, there is no text, and it may appear later.
-    pub(crate) fn open(file: &Path) -> Self {
+    pub(crate) fn open(file: &Path, place: Place) -> Self {
         let on_disk = std::fs::read(file).ok();
         let text = on_disk.clone().and_then(|bytes| String::from_utf8(bytes).ok());
         Self {
@@ -62,7 +72,25 @@ impl Document {
             future: Vec::new(),
             save_error: None,
             is_in_conflict: false,
+            place,
         }
+    }
+
+    /// The scene file.
+    pub(crate) fn file(&self) -> &Path {
+        &self.file
+    }
+
+    pub(crate) fn is_temporary(&self) -> bool {
+        self.place == Place::Temporary
+    }
+
+    /// Goes on with another file, which the artist has named and which has the text.
+    pub(crate) fn move_to(&mut self, file: PathBuf) {
+        self.tried = None;
+        self.on_disk = Some(self.text.clone().into_bytes());
+        (self.file, self.place) = (file, Place::Kept);
+        (self.save_error, self.is_in_conflict) = (None, false);
     }
 
     /// What is shown.
@@ -248,7 +276,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("scene.toml");
         std::fs::write(&file, text).expect("written");
-        let document = Document::open(&file);
+        let document = Document::open(&file, Place::Kept);
         (folder, file, document)
     }
 

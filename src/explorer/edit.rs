@@ -1,6 +1,7 @@
 //! Edits of the scene's text: what the artist left alone, comments and all, stays as it is.
 
 mod landmarks;
+mod parts;
 mod poses;
 mod settings;
 mod written;
@@ -87,6 +88,26 @@ pub(super) enum Op {
         key: String,
         value: Value,
     },
+    MarkPart {
+        pose: String,
+        list: PartList,
+        at: [f64; 2],
+    },
+    UnmarkPart {
+        pose: String,
+        list: PartList,
+        index: usize,
+    },
+}
+
+/// A list of places on loose parts of a pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum PartList {
+    /// Those that belong to the figure.
+    Keep,
+    /// Those that do not.
+    Drop,
 }
 
 /// A key of the animation.
@@ -164,6 +185,8 @@ impl Op {
             Self::SetHandles { pose, handles } => poses::set_handles(document, context, pose, handles)?,
             Self::RemovePose { pose } => poses::remove(document, context, pose)?,
             Self::SetPose { pose, key, value } => poses::set(document, pose, key, value)?,
+            Self::MarkPart { pose, list, at } => parts::mark(document, pose, *list, *at)?,
+            Self::UnmarkPart { pose, list, index } => parts::unmark(document, pose, *list, *index)?,
         }
         Ok(None)
     }
@@ -186,6 +209,9 @@ impl Op {
             Self::SetHandles { pose, .. } => format!("move handles of '{pose}'"),
             Self::RemovePose { pose } => format!("remove pose '{pose}'"),
             Self::SetPose { pose, key, .. } => format!("set {key} of pose '{pose}'"),
+            Self::MarkPart { pose, list, .. } | Self::UnmarkPart { pose, list, .. } => {
+                format!("change what is {} of pose '{pose}'", list.participle())
+            }
         }
     }
 }

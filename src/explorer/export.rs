@@ -82,7 +82,7 @@ pub(super) fn start(body: &[u8], session: &Arc<Session>) -> Result<Value, Refusa
     if asked.output.is_empty() || asked.output == "-" {
         return Err(Refusal::bad("name a file or a folder to write to"));
     }
-    let words = asked.words(session.file());
+    let words = asked.words(&session.file());
     let program = std::env::current_exe().map_err(Refusal::failed)?;
     let mut running = session.jobs.0.lock().unwrap_or_else(PoisonError::into_inner);
     if running.child.is_some() {
@@ -203,7 +203,7 @@ pub(super) fn command(body: &[u8], session: &Session) -> Result<Value, Refusal> 
             words.extend(provider.iter().map(|provider| format!("--provider={provider}")));
             words
         }
-        Asked::Render(export) => export.words(session.file()),
+        Asked::Render(export) => export.words(&session.file()),
     };
     Ok(json!({ "command": command_line(&words) }))
 }

@@ -18,7 +18,7 @@ pub(super) fn puppet(session: &Session) -> Result<Response, Refusal> {
         let texture = |index: usize| {
             json!({
                 "pose": drawn[index],
-                "colour": session.pictures.picture(&shown, k, index, Kind::Colour).0,
+                "colour": session.pictures.picture(&shown, k, index, Kind::of_frames(bench)).0,
                 "drawing": session.pictures.picture(&shown, k, index, Kind::Drawing).0,
             })
         };
@@ -32,7 +32,8 @@ pub(super) fn puppet(session: &Session) -> Result<Response, Refusal> {
     };
     let layers: Vec<Value> = (0..bench.layers().len()).map(layer).collect();
     Ok(Response::json(&json!({
-        "shape": shown.revisions.shape, "pictures": shown.revisions.pictures, "layers": layers,
+        "shape": shown.revisions.shape, "pictures": shown.revisions.pictures,
+        "nearest": Kind::of_frames(bench) == Kind::Nearest, "layers": layers,
     })))
 }
 
@@ -108,9 +109,14 @@ pub(super) fn texture(request: &Request, session: &Session) -> Result<Response, 
     let layer = asked_layer(request, bench)?;
     let index = index(request, "index", bench.drawings(layer).len())?;
     let kind = match request.value("kind") {
-        None | Some("colour") => Kind::Colour,
+        None | Some("colour") => Kind::of_frames(bench),
+        Some("inside") => Kind::Inside,
         Some("drawing") => Kind::Drawing,
-        Some(other) => return Err(Refusal::bad(format!("kind '{other}' is neither colour nor drawing"))),
+        Some(other) => {
+            return Err(Refusal::bad(format!(
+                "kind '{other}' is neither colour, inside nor drawing"
+            )));
+        }
     };
     let (_, png) = session.pictures.picture(&shown, layer, index, kind);
     Ok(Response {

@@ -3,7 +3,7 @@
 //! The page ([`page`]) is plain HTML, CSS and JavaScript in the binary. It asks this server for everything that is computed, and
 //! tells it every edit; the server owns the scene's text, its undo and the file. Files here: [`http`] (the protocol), [`security`]
 //! (who is answered), [`server`] (connections), [`socket`] (those that stay open), [`routes`], [`session`] and [`state`] (the state), [`document`] (the scene's text, undo, saving),
-//! [`edit`] (edits of the text), [`model`] (what is computed of a scene), [`worker`] (heavy work, and the look at the disk), and
+//! [`keeping`] (scenes that were begun for drawings), [`edit`] (edits of the text), [`model`] (what is computed of a scene), [`worker`] (heavy work, and the look at the disk), and
 //! one file a group of answers.
 //!
 //! # How a page talks to it
@@ -47,7 +47,7 @@
 //! {"seq": 17,
 //!  "revisions": {"scene": 4, "weights": 9, "shape": 2, "pictures": 1},
 //!  "working": false, "dragging": false,
-//!  "saved": true, "conflict": false, "save_error": null,
+//!  "saved": true, "conflict": false, "temporary": false, "save_error": null,
 //!  "undo": "move pose 'jump'", "redo": null,
 //!  "problems": [PROBLEM, ...],
 //!  "timings": {"mapping_ms": 96.1},
@@ -57,7 +57,7 @@
 //! `api/puppet`, `api/correspondences`, frames; `pictures`: textures and drawings (their `v=`), `api/puppet`. `shape` 0: there is
 //! no mesh (a broken scene). `working`: a newer scene than the one shown is being computed. `problems` are those of the newest
 //! scene; what is shown is the last good one. `saved` is false while a drag lasts, or if the file could not be written
-//! (`save_error`). `conflict`: the file was changed outside while something here was not saved. `timings`: how long the last mapping
+//! (`save_error`). `temporary`: the scene was begun for drawings and lies in a temporary folder until `api/keep`. `conflict`: the file was changed outside while something here was not saved. `timings`: how long the last mapping
 //! took, from its edit to the new shape. `job`: see *Export*.
 //!
 //! # The scene
@@ -126,7 +126,7 @@
 //!
 //! `GET api/puppet`:
 //! ```json
-//! {"shape": 2, "pictures": 1,
+//! {"shape": 2, "pictures": 1, "nearest": false,
 //!  "layers": [{"name": "walker", "poses": [0, 1, 2], "vertices": 512, "triangles": 930,
 //!              "texture_of": [0, 1, 2],                  // per pose of the layer
 //!              "curves": false,                          // whether its frames are curves when they are rendered
@@ -144,7 +144,9 @@
 //! indices; P times 3 V vertices of the layer's mesh and 3 V shares (f32): vertex k is in a pose where these carry it (at a frame: the sum over the
 //! poses, by their weights in it); R rings as above, in any order.
 //!
-//! `GET api/texture?layer=0&index=0&kind=colour|drawing&v=PICTURES`: PNG, straight alpha, of the size that the puppet says.
+//! `GET api/texture?layer=0&index=0&kind=colour|inside|drawing&v=PICTURES`: PNG, straight alpha, of the size that the puppet says.
+//! Where `nearest` is true, frames show nearest texels: `colour` has the drawing's own pixels, `inside` is opaque where they lie inside its
+//! outline; a frame's pixel is inside where at least half of the textures' weight is.
 //!
 //! `GET api/drawing?layer=0&pose=2&max=256&v=PICTURES`: PNG of a pose's picture, scaled down so that no side exceeds `max`; there as
 //! soon as the drawing can be read, mesh or not (a copy shows its original's). Its place: `api/correspondences`, `pictures`.
@@ -173,6 +175,26 @@
 //!
 //! `POST api/carry {"layer": 0, "pose": "stand", "at": [x, y]}` answers `{"kind": "outline" | "inside", "poses": ["stand", ...],
 //! "at": [[x, y], ...]}`: where the present match has this point on every pose of the layer; what a new landmark begins with.
+//!
+//! # Figures
+//!
+//! `GET api/figure?layer=0&pose=2`: what was taken for the figure of a drawing, in the coordinates of its file, whether or not the pose is
+//! reflected; `layer` is one that the scene names:
+//! ```json
+//! {"name": "run", "bitmap": true,                          // `reading` does not concern SVG drawings
+//!  "taken": "lines",                                       // as what the figure of a bitmap was taken: or "alpha", "background"
+//!  "mark": "1f3a-18c2d5e9",                                // of the file: `v` of its sheet
+//!  "sheet": {"origin": [0, 0], "scale": 1, "width": 640, "height": 720},  // null if it cannot be read
+//!  "pieces": [{"role": "body", "outline": [x, y, ...], "holes": [[x, y, ...], ...]}, ...],  // or "part", "kept", "dropped"
+//!  "notes": ["the figure is what the lines enclose, with its inside"],
+//!  "reading": {"figure": "lines", "gap": 0.01, "paper": "keep", "threshold": 0.5},
+//!  "usual": {"figure": "auto", ...},                       // of poses that do not say it themselves
+//!  "own": ["figure"],                                      // what this one says itself
+//!  "keep": [[x, y], ...], "drop": [[x, y], ...],
+//!  "problem": null}                                        // PROBLEM if it cannot be read as it is said
+//! ```
+//! With `keep=X,Y` the answer is 409 if no piece is there that could be kept. `GET api/sheet?layer=0&pose=2&max=1600&v=MARK`: PNG of the
+//! drawing's whole sheet, nothing taken out.
 //!
 //! # Grids
 //!
@@ -212,12 +234,15 @@
 //! | `add_deformed_pose` | `name` (optional), `of`, `at`, `handles` [{`from`, `to`, `layer`}] |
 //! | `set_handles` | `pose`, `handles` |
 //! | `remove_pose` | `pose` (a copy, or a drawn pose without copies; its places in landmarks go, too) |
-//! | `set_pose` | `pose`, `key` (`mirror`, `turns`, `name`), `value` |
+//! | `set_pose` | `pose`, `key` (`mirror`, `turns`, `name`, `figure`, `gap`, `paper`, `threshold`), `value`; null removes the key |
+//! | `mark_part` | `pose`, `list` (`keep`, `drop`), `at`, in the coordinates of the file |
+//! | `unmark_part` | `pose`, `list`, `index` |
 //!
 //! | route | |
 //! |---|---|
 //! | `POST api/undo`, `POST api/redo` | one step; the file gets back its bytes. Answer the state; 409 if there is none |
 //! | `POST api/save` | tries again to save, after a `save_error` |
+//! | `POST api/keep {"folder": "cat"}` | writes a `temporary` scene and its drawings into a folder, relative to where `explore` was started, and goes on there; 409 if a scene or other drawings of these names are there |
 //! | `POST api/conflict {"take": "mine" \| "theirs"}` | ends a conflict: writes what is here, or reads what is there (which can be undone) |
 //!
 //! # Handles
@@ -257,12 +282,14 @@ mod document;
 mod draggers;
 mod edit;
 mod export;
+mod figures;
 mod frames;
 mod gesture;
 mod grids;
 mod handles;
 mod http;
 mod jobs;
+mod keeping;
 mod meshes;
 mod model;
 mod page;
@@ -281,11 +308,21 @@ mod thinning;
 mod wire;
 mod worker;
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::sync::Arc;
 
+pub(crate) use self::keeping::{Begun, DrawingCopy};
 use self::server::Server;
 use self::session::Session;
+
+/// What is opened.
+#[derive(Debug)]
+pub(crate) enum Opened {
+    /// A scene file.
+    Scene(PathBuf),
+    /// A scene that was begun for drawings.
+    Begun(Begun),
+}
 
 /// A scene that is explored: its state and the server that answers for it.
 pub(crate) struct Explorer {
@@ -295,8 +332,11 @@ pub(crate) struct Explorer {
 
 impl Explorer {
     /// Opens a scene and listens, at `port` or a free one. A broken scene is opened as far as it can be.
-    pub(crate) fn open(file: &Path, port: Option<u16>) -> anyhow::Result<Self> {
-        let session = Arc::new(Session::open(file));
+    pub(crate) fn open(opened: Opened, port: Option<u16>) -> anyhow::Result<Self> {
+        let session = Arc::new(match opened {
+            Opened::Scene(file) => Session::open(&file),
+            Opened::Begun(begun) => Session::begun(begun),
+        });
         let server = Server::bind(port)?;
         let working = Arc::clone(&session);
         std::thread::Builder::new()

@@ -13,7 +13,7 @@ use super::problem::Refusal;
 type EncodedPicture = (Value, Result<Arc<Vec<u8>>, Refusal>);
 
 /// By layer, drawing and kind.
-type EncodedPictures = BTreeMap<(usize, usize, bool), EncodedPicture>;
+type EncodedPictures = BTreeMap<(usize, usize, Kind), EncodedPicture>;
 
 /// Those of the newest revision that was asked for.
 #[derive(Debug, Default)]
@@ -23,7 +23,7 @@ impl PictureCache {
     /// The picture of a layer's drawing: where it lies, and its PNG file. Made once.
     pub(super) fn picture(&self, shown: &Shown, layer: usize, index: usize, kind: Kind) -> EncodedPicture {
         let revision = shown.revisions.pictures;
-        let key = (layer, index, kind == Kind::Colour);
+        let key = (layer, index, kind);
         {
             let mut kept = self.lock();
             if kept.0 < revision {

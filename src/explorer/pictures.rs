@@ -3,7 +3,7 @@
 use inbetween::export::texture_png;
 use inbetween::math::Point;
 use inbetween::pipeline::LayerShape;
-use inbetween::render::{PuppetTexture, Texture};
+use inbetween::render::{PuppetTexture, Sampling, Texture};
 use inbetween::scene::Workbench;
 use serde_json::{Value, json};
 
@@ -80,12 +80,26 @@ impl Placed {
 }
 
 /// Which picture of a drawing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Kind {
     /// Colours that reach beyond the edge, to be cut by the frame's outline.
     Colour,
+    /// The drawing's own pixels, and outside of its outline the nearest of them: for frames that show nearest texels.
+    Nearest,
+    /// Which of these lie inside the outline: opaque ones.
+    Inside,
     /// The drawing with its own edge.
     Drawing,
+}
+
+impl Kind {
+    /// What frames of a scene are made of.
+    pub(super) fn of_frames(bench: &Workbench) -> Self {
+        match bench.scene().sampling {
+            Sampling::Smooth => Self::Colour,
+            Sampling::Nearest => Self::Nearest,
+        }
+    }
 }
 
 /// The picture of a layer's drawing.
@@ -93,29 +107,15 @@ pub(super) fn picture(bench: &Workbench, layer: usize, index: usize, kind: Kind)
     let drawing = &bench.drawings(layer)[index];
     let fineness = TEXELS_A_PIXEL * bench.camera().scale();
     match kind {
-        Kind::Colour => {
-            let texture = Texture::new(&drawing.picture, &drawing.outline, fineness);
-            let [width, height] = texture.size();
-            let origin = texture.to_texels(Point::zeros());
-            let scale = texture.to_texels(Point::new(1.0, 0.0)).x - origin.x;
-            let straight = |i: usize| {
-                let (x, y) = ((i % width) as f32 + 0.5, (i / width) as f32 + 0.5);
-                let [r, g, b, a] = texture.sample(x, y);
-                let divided = |c: f32| (c * 255.0 / a.max(1.0)).round().min(255.0) as u8;
-                [divided(r), divided(g), divided(b), a.round() as u8]
-            };
-            Placed {
-                texture: PuppetTexture {
-                    name: String::new(),
-                    width,
-                    height,
-                    pixels: (0..width * height).map(straight).collect(),
-                    places: Vec::new(),
-                },
-                origin: Point::zeros() - origin / scale,
-                scale,
-            }
-        }
+        Kind::Colour => placed(&Texture::new(&drawing.picture, &drawing.outline, fineness), straight),
+        Kind::Nearest => placed(&Texture::for_nearest(&drawing.picture, &drawing.outline), straight),
+        Kind::Inside => placed(
+            &Texture::for_nearest(&drawing.picture, &drawing.outline),
+            |texture, i| {
+                let is_inside = texture.texels_inside().get(i).copied().unwrap_or_default();
+                [255, 255, 255, if is_inside { 255 } else { 0 }]
+            },
+        ),
         Kind::Drawing => {
             let corners = outline_box(drawing.outline.outer().points());
             let texture = PuppetTexture::new("", &drawing.picture, &drawing.outline, &corners, fineness);
@@ -128,6 +128,33 @@ pub(super) fn picture(bench: &Workbench, layer: usize, index: usize, kind: Kind)
             }
         }
     }
+}
+
+/// A texture, whose pixels are what `pixel` says.
+fn placed(texture: &Texture, pixel: impl Fn(&Texture, usize) -> [u8; 4]) -> Placed {
+    let [width, height] = texture.size();
+    let origin = texture.to_texels(Point::zeros());
+    let scale = texture.to_texels(Point::new(1.0, 0.0)).x - origin.x;
+    Placed {
+        texture: PuppetTexture {
+            name: String::new(),
+            width,
+            height,
+            pixels: (0..width * height).map(|i| pixel(texture, i)).collect(),
+            places: Vec::new(),
+        },
+        origin: Point::zeros() - origin / scale,
+        scale,
+    }
+}
+
+/// The colour of a texel, not multiplied by its alpha.
+fn straight(texture: &Texture, i: usize) -> [u8; 4] {
+    let [width, _] = texture.size();
+    let (x, y) = ((i % width) as f32 + 0.5, (i / width) as f32 + 0.5);
+    let [r, g, b, a] = texture.sample(x, y);
+    let divided = |c: f32| (c * 255.0 / a.max(1.0)).round().min(255.0) as u8;
+    [divided(r), divided(g), divided(b), a.round() as u8]
 }
 
 /// The lowest and the highest corner.

@@ -7,7 +7,7 @@ use super::document::Document;
 use super::http::{Request, Response};
 use super::problem::Refusal;
 use super::session::Session;
-use super::{correspondences, export, frames, gesture, grids, handles, meshes, scene_json};
+use super::{correspondences, export, figures, frames, gesture, grids, handles, keeping, meshes, scene_json};
 
 /// How long the state is waited for.
 const LONGEST_WAIT: Duration = Duration::from_secs(25);
@@ -42,6 +42,8 @@ fn computed(route: &str, request: &Request, session: &Arc<Session>) -> Result<Re
         ("GET", "texture") => meshes::texture(request, session),
         ("GET", "drawing") => correspondences::drawing(request, session),
         ("GET", "correspondences") => correspondences::correspondences(request, session),
+        ("GET", "figure") => figures::figure(request, session),
+        ("GET", "sheet") => figures::sheet(request, session),
         ("GET", "grid") => grids::weights(request, session),
         ("GET", "validity") => grids::validity(request, session),
         ("POST", "carry") => correspondences::carry(body, session),
@@ -49,6 +51,7 @@ fn computed(route: &str, request: &Request, session: &Arc<Session>) -> Result<Re
         ("POST", "undo") => json(session.step(Document::undo)?),
         ("POST", "redo") => json(session.step(Document::redo)?),
         ("POST", "save") => json(session.save()),
+        ("POST", "keep") => json(keeping::keep(body, session)?),
         ("POST", "conflict") => json(session.end_conflict(body)?),
         ("POST", "deform") => handles::deform(body, session),
         ("POST", "reach") => handles::reach_place(body, session),
@@ -77,6 +80,8 @@ const ROUTES: &[&str] = &[
     "texture",
     "drawing",
     "correspondences",
+    "figure",
+    "sheet",
     "grid",
     "validity",
     "carry",
@@ -84,6 +89,7 @@ const ROUTES: &[&str] = &[
     "undo",
     "redo",
     "save",
+    "keep",
     "conflict",
     "deform",
     "reach",

@@ -3,7 +3,7 @@
 //! What is shown is one immutable [`Shown`]; requests take it and never wait for work. Edits change the [`Document`] at once and tell
 //! the worker which scene is wanted; it shows the newest as soon as it can. Weights follow a pose that is moved at once.
 //!
-//! Locks are taken in this order: document, state, pictures.
+//! Locks are taken in this order: document, temporary folder, state, pictures.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -13,10 +13,11 @@ use inbetween::scene::{DrawingFiles, Layout, Scene, Workbench};
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::document::{Document, Outside};
+use super::document::{Document, Outside, Place};
 use super::draggers::Draggers;
 use super::edit::{self, Context, Op};
 use super::jobs::Jobs;
+use super::keeping::{Begun, DrawingCopy};
 use super::model::Shown;
 use super::picture_cache::PictureCache;
 use super::problem::{Problem, Refusal};
@@ -26,7 +27,6 @@ use super::state::{FileState, State, Wanted};
 /// The state of an explored scene.
 #[derive(Debug)]
 pub(crate) struct Session {
-    file: PathBuf,
     document: Mutex<Document>,
     state: Mutex<State>,
     /// Told whenever `seq` changes.
@@ -39,6 +39,8 @@ pub(crate) struct Session {
     pub(super) draggers: Draggers,
     /// The export.
     pub(super) jobs: Jobs,
+    /// Of a scene that lies in a temporary folder: that folder, and its drawings.
+    temporary: Mutex<Option<(PathBuf, Vec<DrawingCopy>)>>,
 }
 
 /// The body of `POST api/edit`.
@@ -64,9 +66,18 @@ enum Phase {
 impl Session {
     /// Opens a scene file, as far as it can be.
     pub(crate) fn open(file: &Path) -> Self {
+        Self::of(Document::open(file, Place::Kept), None)
+    }
+
+    /// Opens a scene that was begun for drawings.
+    pub(crate) fn begun(begun: Begun) -> Self {
+        let document = Document::open(&begun.file, Place::Temporary);
+        Self::of(document, Some((begun.temporary, begun.copies)))
+    }
+
+    fn of(document: Document, temporary: Option<(PathBuf, Vec<DrawingCopy>)>) -> Self {
         let session = Self {
-            file: file.to_owned(),
-            document: Mutex::new(Document::open(file)),
+            document: Mutex::new(document),
             state: Mutex::new(State {
                 seq: 1,
                 ..State::default()
@@ -76,12 +87,13 @@ impl Session {
             pictures: PictureCache::default(),
             draggers: Draggers::default(),
             jobs: Jobs::default(),
+            temporary: Mutex::new(temporary),
         };
         session.read_document(&session.lock_document());
         session
     }
 
-    fn lock_document(&self) -> MutexGuard<'_, Document> {
+    pub(super) fn lock_document(&self) -> MutexGuard<'_, Document> {
         self.document.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -95,12 +107,12 @@ impl Session {
     }
 
     /// Takes the scene that the document says.
-    fn read_document(&self, document: &Document) {
+    pub(super) fn read_document(&self, document: &Document) {
         let read = if document.text().is_empty() {
             // Why there is none.
-            Scene::open(&self.file)
+            Scene::open(document.file())
         } else {
-            Scene::parse(document.text(), &self.file)
+            Scene::parse(document.text(), document.file())
         };
         match read {
             Ok(scene) => self.adopt(document, scene, Phase::Done),
@@ -196,7 +208,8 @@ impl Session {
                 bench: shown.bench.as_deref(),
             };
             let edited = edit::apply(document.base(), &request.ops, &context)?;
-            let scene = Scene::parse(&edited.text, &self.file).map_err(|e| Refusal::conflict(Problem::from(&e)))?;
+            let scene = Scene::parse(&edited.text, document.file());
+            let scene = scene.map_err(|error| Refusal::conflict(Problem::from(&error)))?;
             names = edited.names;
             if request.phase == Phase::Drag {
                 document.try_out(edited.text);
@@ -281,14 +294,36 @@ impl Session {
         self.read_document(&document);
     }
 
+    /// Whether the drawings' files have changed since they were read.
+    pub(super) fn is_stale(&self) -> bool {
+        self.lock().is_stale
+    }
+
     /// What is shown.
     pub(crate) fn shown(&self) -> Arc<Shown> {
         Arc::clone(&self.lock().shown)
     }
 
     /// The scene's path, as it was given.
-    pub(crate) fn file(&self) -> &Path {
-        &self.file
+    pub(crate) fn file(&self) -> PathBuf {
+        self.lock_document().file().to_owned()
+    }
+
+    /// Takes drawings again that have changed since the scene that was begun for them copied them.
+    pub(crate) fn refresh_copies(&self) {
+        let mut temporary = self.temporary.lock().unwrap_or_else(PoisonError::into_inner);
+        for copy in temporary.iter_mut().flat_map(|(_, copies)| copies) {
+            copy.refresh();
+        }
+    }
+
+    /// The scene lies elsewhere now: its temporary folder goes.
+    pub(super) fn forget_temporary(&self) {
+        let mut temporary = self.temporary.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((folder, _)) = temporary.take() {
+            // What cannot be removed the system removes some day.
+            let _ = std::fs::remove_dir_all(folder);
+        }
     }
 
     /// The scene's text.
@@ -360,7 +395,8 @@ impl Session {
                 if !old.is_some_and(|old| Arc::ptr_eq(old.weights(), bench.weights()) && old.has_figure_of(&bench)) {
                     revisions.weights += 1;
                 }
-                if !old.is_some_and(|old| old.has_pictures_of(&bench)) {
+                let is_sampled_alike = |old: &Workbench| old.scene().sampling == bench.scene().sampling;
+                if !old.is_some_and(|old| old.has_pictures_of(&bench) && is_sampled_alike(old)) {
                     revisions.pictures += 1;
                 }
                 if !old.is_some_and(|old| old.has_meshes_of(&bench)) {

@@ -48,6 +48,7 @@ pub(crate) fn watch(session: &Session) {
     loop {
         std::thread::sleep(BETWEEN_LOOKS);
         session.look_at_file();
+        session.refresh_copies();
         let Some(scene) = session.shown().scene.clone() else {
             continue;
         };

@@ -42,5 +42,5 @@ pub use obj::{ObjError, ObjForm, ObjProblem, open_obj, read_obj};
 pub use path::{
     Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke, Subpath,
 };
-pub use picture::{Picture, read_picture};
-pub use svg::{Extent, SvgOptions, open_svg, read_svg, svg_page_px};
+pub use picture::{Picture, read_chosen_picture, read_picture};
+pub use svg::{Extent, SvgOptions, open_svg, read_svg, read_svg_page, svg_page_px};

@@ -1,7 +1,7 @@
 //! A drawing's pixels.
 
 use super::InputError;
-use super::decode::decode;
+use super::decode::{PictureChoice, decode_chosen};
 use crate::math::Point;
 
 /// A premultiplied RGBA image with its place in the source's coordinates.
@@ -55,7 +55,15 @@ impl std::fmt::Debug for Picture {
 /// # Errors
 /// [`InputError`] if it is no image of a known kind and a sensible size.
 pub fn read_picture(bytes: &[u8]) -> Result<Picture, InputError> {
-    let image = decode(bytes)?.image;
+    read_chosen_picture(bytes, PictureChoice::Only)
+}
+
+/// One of the pictures in the bytes of an image file as it is, nothing taken out.
+///
+/// # Errors
+/// As [`read_picture`], and if there is no such picture.
+pub fn read_chosen_picture(bytes: &[u8], choice: PictureChoice) -> Result<Picture, InputError> {
+    let image = decode_chosen(bytes, choice)?.image;
     let times = |c: u8, alpha: u8| ((u16::from(c) * u16::from(alpha) + 127) / 255) as u8;
     let premultiplied = |[r, g, b, a]: [u8; 4]| [times(r, a), times(g, a), times(b, a), a];
     Ok(Picture {

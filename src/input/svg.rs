@@ -136,6 +136,22 @@ pub fn svg_page_px(bytes: &[u8]) -> Result<Point, InputError> {
     Ok(Point::new(f64::from(size.width()), f64::from(size.height())))
 }
 
+/// All that is drawn on the page of the SVG file in `bytes`, as large as the pictures of drawings are; nothing is taken out.
+///
+/// # Errors
+/// [`InputError`] if the bytes are no SVG.
+pub fn read_svg_page(bytes: &[u8]) -> Result<Picture, InputError> {
+    let text = svg_text::decode(bytes).map_err(|reason| not_svg(&reason))?;
+    let (text, _) = svg_text::with_variables(text);
+    let Source { document, tree } = Source::new(&text)?;
+    let to_user = user_units(&document, &tree);
+    let (width, height) = (f64::from(tree.size().width()), f64::from(tree.size().height()));
+    let page = to_user.transform_rect_bbox(kurbo::Rect::new(0.0, 0.0, width, height));
+    let corners = (Point::new(page.x0, page.y0), Point::new(page.x1, page.y1));
+    let drawn: Vec<&usvg::Node> = tree.root().children().iter().collect();
+    rasterise(&drawn, to_user, Some(corners), None)
+}
+
 /// A drawing with the page that it is on.
 struct OnPage {
     drawing: Drawing,

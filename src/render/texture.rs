@@ -123,6 +123,12 @@ impl Texture {
         texture
     }
 
+    /// Of a texture for nearest texels, which of them lie inside the outline, row by row; otherwise empty.
+    #[must_use]
+    pub fn texels_inside(&self) -> &[bool] {
+        &self.inside
+    }
+
     /// The texel nearest to a place in texels, and whether it lies inside the outline; beyond the border it does not.
     pub(super) fn nearest(&self, place: Point) -> ([u8; 4], bool) {
         let [width, height] = self.size();

@@ -4,8 +4,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::SceneBuildError;
-use super::settings::{Holes, Scene};
-use crate::input::{BitmapOptions, HoleRule, InputError, SvgOptions, bitmap_size, read_bitmap, read_svg, svg_page_px};
+use super::settings::{DrawnSource, Holes, Scene};
+use crate::input::{
+    BitmapOptions, HoleRule, InputError, Picture, SvgOptions, bitmap_size, read_bitmap, read_chosen_picture, read_svg,
+    read_svg_page, svg_page_px,
+};
 use crate::math::Point;
 use crate::pipeline::{DrawnPose, SvgSource};
 
@@ -15,20 +18,12 @@ use crate::pipeline::{DrawnPose, SvgSource};
 /// # Errors
 /// [`SceneBuildError`], naming pose and file, if it cannot be read.
 pub(super) fn read_drawing(scene: &Scene, layer: Option<&str>, pose: usize) -> Result<DrawnPose, SceneBuildError> {
-    let path = scene.source_path(pose)?;
-    let Some((root, said)) = scene.drawing_of(pose) else {
-        return Err(scene.without_drawing(pose).into());
-    };
     let holes = match scene.input.holes {
         Holes::Match | Holes::Keep => HoleRule::Keep,
         Holes::Fill => HoleRule::Fill,
     };
-    let read = || -> Result<DrawnPose, InputError> {
-        let bytes = std::fs::read(&path).map_err(|source| InputError::Unreadable {
-            path: path.clone(),
-            source,
-        })?;
-        let mut drawn = if is_svg(&path) {
+    from_file(scene, layer, pose, |path, bytes, said| {
+        let mut drawn = if is_svg(path) {
             let options = SvgOptions {
                 element: said.element.clone(),
                 pixels_per_unit: None,
@@ -37,8 +32,7 @@ pub(super) fn read_drawing(scene: &Scene, layer: Option<&str>, pose: usize) -> R
                 parts: said.parts.clone(),
                 around: None,
             };
-            let drawing = read_svg(&bytes, &options)?;
-            let mut drawn = DrawnPose::new(drawing);
+            let mut drawn = DrawnPose::new(read_svg(bytes, &options)?);
             drawn.svg = Some(Arc::new(SvgSource {
                 bytes: bytes.into(),
                 options,
@@ -54,18 +48,10 @@ pub(super) fn read_drawing(scene: &Scene, layer: Option<&str>, pose: usize) -> R
                 parts: said.parts.clone(),
                 picture: said.picture,
             };
-            DrawnPose::new(read_bitmap(&bytes, &options)?)
+            DrawnPose::new(read_bitmap(bytes, &options)?)
         };
         drawn.facing = said.facing;
         Ok(drawn)
-    };
-    read().map_err(|source| SceneBuildError::Drawing {
-        file: scene.file.clone(),
-        line: said.line,
-        layer: layer.map(str::to_owned),
-        pose: scene.poses[root].name.clone(),
-        drawing: said.file.clone(),
-        source: Box::new(source),
     })
 }
 
@@ -74,25 +60,49 @@ pub(super) fn read_drawing(scene: &Scene, layer: Option<&str>, pose: usize) -> R
 /// # Errors
 /// As [`read_drawing`].
 pub(super) fn canvas_px(scene: &Scene, pose: usize) -> Result<Point, SceneBuildError> {
+    from_file(scene, None, pose, |path, bytes, said| {
+        if is_svg(path) {
+            svg_page_px(bytes)
+        } else {
+            bitmap_size(bytes, said.picture)
+        }
+    })
+}
+
+/// All that is on the sheet of a pose's drawing; `layer` as in [`read_drawing`].
+///
+/// # Errors
+/// As [`read_drawing`].
+pub(super) fn read_sheet(scene: &Scene, layer: Option<&str>, pose: usize) -> Result<Picture, SceneBuildError> {
+    from_file(scene, layer, pose, |path, bytes, said| {
+        if is_svg(path) {
+            read_svg_page(bytes)
+        } else {
+            read_chosen_picture(bytes, said.picture)
+        }
+    })
+}
+
+/// What `read` makes of the bytes of a pose's drawing.
+fn from_file<T>(
+    scene: &Scene,
+    layer: Option<&str>,
+    pose: usize,
+    read: impl FnOnce(&Path, &[u8], &DrawnSource) -> Result<T, InputError>,
+) -> Result<T, SceneBuildError> {
     let path = scene.source_path(pose)?;
     let Some((root, said)) = scene.drawing_of(pose) else {
         return Err(scene.without_drawing(pose).into());
     };
-    let read = || {
-        let bytes = std::fs::read(&path).map_err(|source| InputError::Unreadable {
-            path: path.clone(),
-            source,
-        })?;
-        if is_svg(&path) {
-            svg_page_px(&bytes)
-        } else {
-            bitmap_size(&bytes, said.picture)
-        }
-    };
-    read().map_err(|source| SceneBuildError::Drawing {
+    let bytes = std::fs::read(&path).map_err(|source| InputError::Unreadable {
+        path: path.clone(),
+        source,
+    });
+    let made = bytes.and_then(|bytes| read(&path, &bytes, said));
+    made.map_err(|source| SceneBuildError::Drawing {
         file: scene.file.clone(),
         line: said.line,
-        layer: None,
+        layer: layer.map(str::to_owned),
         pose: scene.poses[root].name.clone(),
         drawing: said.file.clone(),
         source: Box::new(source),

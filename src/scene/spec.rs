@@ -5,10 +5,11 @@
 
 use rayon::prelude::*;
 
-use super::drawings::{canvas_px, read_drawing};
+use super::drawings::{canvas_px, read_drawing, read_sheet};
 use super::settings::{FrameSize, Holes, Layout, PoseSource, Provider, Scene};
 use super::{SceneBuildError, SceneLayer};
 use crate::blend::BlendOptions;
+use crate::input::Picture;
 use crate::math::Point;
 use crate::math::point::bounding_box;
 use crate::pipeline::{
@@ -86,6 +87,15 @@ impl Scene {
     pub fn read_drawing(&self, layer: usize, pose: usize) -> Result<DrawnPose, SceneBuildError> {
         let named = self.layers.get(layer).map(|layer| layer.name.as_str());
         read_drawing(self.of_layer(layer), named, pose)
+    }
+
+    /// All that is on the sheet of the drawing of one pose of a layer, by its index there: as its file has it, nothing taken out.
+    ///
+    /// # Errors
+    /// As [`Self::spec`].
+    pub fn read_sheet(&self, layer: usize, pose: usize) -> Result<Picture, SceneBuildError> {
+        let named = self.layers.get(layer).map(|layer| layer.name.as_str());
+        read_sheet(self.of_layer(layer), named, pose)
     }
 
     /// The weights of a scene that is [laid out](Self::with_automatic_places); `provider` overrides its own choice.

@@ -96,6 +96,17 @@ impl Workbench {
         }
     }
 
+    /// The drawing of one pose of a layer of an edited scene, by its index there, as its file has it: read only if it is not one that
+    /// is known and read in the same way.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn read_drawing(&self, edited: &Scene, layer: usize, pose: usize) -> Result<DrawnPose, SceneBuildError> {
+        let named = edited.layers.get(layer).map(|layer| layer.name.as_str());
+        let kept = self.kept(edited.of_layer(layer), named, pose);
+        kept.map_or_else(|| edited.read_drawing(layer, pose), Ok)
+    }
+
     /// The drawing of a pose of a layer, by their names in the edited scene, if it is one that is known and read in the same way.
     fn kept(&self, edited: &Scene, layer: Option<&str>, pose: usize) -> Option<DrawnPose> {
         let (_, wanted) = edited.drawing_of(pose)?;

@@ -3,8 +3,7 @@
 //
 // Every proof takes what `explorer.mjs` drives the page with: {page, scene, check, centre, drag, drawn, edited, saved, padPoint}.
 import { readFileSync, writeFileSync } from 'node:fs';
-
-const api = (page, route) => page.evaluate(async (asked) => (await fetch(`api/${asked}`)).json(), route);
+import { api, until } from './driver.mjs';
 
 /** Undoes all there is, and compares the file with what it was. */
 async function undone({ page, scene, check, saved }, bytes, what) {
@@ -119,7 +118,7 @@ export async function lines(tools) {
   const ends = [await centre(cell, '.line.chosen [data-node="0"] .node'), await centre(cell, '.line.chosen [data-node="1"] .node')];
   const between = middle(...ends);
   await drag(page, between, [between[0] + 3, between[1] + 6], 5, 40);
-  await page.waitForFunction(async (own) => (await (await fetch('api/scene')).json()).landmarks.at(-1).at[own].length === 3, drawn[0].name, { timeout: 10000 });
+  await until(page, async (own) => (await (await fetch('api/scene')).json()).landmarks.at(-1).at[own].length === 3, drawn[0].name, { timeout: 10000 });
   check(true, 'dragging the line between two points makes a third');
   await page.keyboard.press('l');
   await undone(tools, bytes, 'a line');
@@ -174,11 +173,11 @@ export async function pseudoPoses(tools) {
   check(other.some((weight, k) => Math.abs(weight - plain[k]) > 1e-3), 'and changes the weights around');
   await page.locator('circle.pseudo.at').focus();
   await page.keyboard.press('ArrowLeft');
-  await page.waitForFunction(async (old) => (await (await fetch('api/scene')).json()).pseudo_poses[0].at[0] < old, dragged.at[0]);
+  await until(page, async (old) => (await (await fetch('api/scene')).json()).pseudo_poses[0].at[0] < old, dragged.at[0]);
   check(true, 'an arrow key moves it, too');
   await tools.saved(page);
   await page.getByLabel('Remove pseudo-pose 1').click();
-  await page.waitForFunction(async () => (await (await fetch('api/scene')).json()).pseudo_poses.length === 0);
+  await until(page, async () => (await (await fetch('api/scene')).json()).pseudo_poses.length === 0);
   check(true, 'and it is removed');
   await undone(tools, bytes, 'pseudo-poses');
 }
@@ -196,11 +195,11 @@ export async function conflict(tools) {
     await page.mouse.move(x, y);
     await page.mouse.down();
     await page.mouse.move(x + 10, y + 12, { steps: 4 });
-    await page.waitForFunction(async () => (await (await fetch('api/state')).json()).dragging);
+    await until(page, async () => (await (await fetch('api/state')).json()).dragging);
     writeFileSync(scene, theirs);
     await page.mouse.up();
     // The last of the drag has arrived, too.
-    await page.waitForFunction(async () => {
+    await until(page, async () => {
       const now = await (await fetch('api/state')).json();
       return now.conflict && !now.dragging;
     }, null, { timeout: 10000 });
@@ -209,7 +208,7 @@ export async function conflict(tools) {
   await meanwhile();
   check(readFileSync(scene, 'utf8') === theirs, 'what somebody else has written meanwhile is not overwritten');
   await page.getByRole('button', { name: 'Read the file' }).click();
-  await page.waitForFunction(async () => !(await (await fetch('api/state')).json()).conflict);
+  await until(page, async () => !(await (await fetch('api/state')).json()).conflict);
   const read = (await api(page, 'scene')).poses[1].at;
   check(read.join() === poses[1].at.join() && readFileSync(scene, 'utf8') === theirs, 'the file is read instead where the artist says so');
   writeFileSync(scene, text);
@@ -217,13 +216,13 @@ export async function conflict(tools) {
   await drawn(page);
   await meanwhile();
   await page.getByRole('button', { name: 'Keep what is here' }).click();
-  await page.waitForFunction(async () => {
+  await until(page, async () => {
     const now = await (await fetch('api/state')).json();
     return !now.conflict && now.saved;
   });
   const kept = readFileSync(scene, 'utf8');
   check(kept !== theirs && kept !== text && !kept.includes('written elsewhere'), 'or what is here is kept, and written');
   writeFileSync(scene, text);
-  await page.waitForFunction(async (old) => (await (await fetch('api/scene')).json()).poses[1].at.join() === old, poses[1].at.join(), { timeout: 10000 });
+  await until(page, async (old) => (await (await fetch('api/scene')).json()).poses[1].at.join() === old, poses[1].at.join(), { timeout: 10000 });
   await drawn(page);
 }

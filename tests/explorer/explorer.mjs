@@ -6,18 +6,16 @@
 // computed on the processor where there is no graphics card, or the page's own painter, which it takes by itself then.
 //
 // COMMAND is a built `inbetween`. The scene is copied into FOLDER first and edited there; pictures of the page go there, too.
-// playwright-core is looked for in $PLAYERS/node_modules, Chromium at $CHROMIUM. Checks that a scene gives no occasion for
-// (it has no plane, no landmarks) are left out.
-import { execFileSync, spawn } from 'node:child_process';
+// `driver.mjs` says where the browser is looked for. Checks that a scene gives no occasion for (it has no plane, no landmarks) are left out.
+import { execFileSync } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { request } from 'node:http';
 import { basename, dirname, join, resolve } from 'node:path';
+import { browser as launched, drawn, edited, saved, serve, state, until } from './driver.mjs';
 import { conflict, keysInTime, landmarkByKeys, lines, pseudoPoses } from './edits.mjs';
 import { decodePng, difference } from './picture.mjs';
+import { placesOfMatches, placesOfPicture } from './places.mjs';
 
-const players = process.env.PLAYERS ?? '.';
-const { chromium } = createRequire(resolve(players, 'node_modules', 'none.js'))('playwright-core');
 const [command, original, folder] = process.argv.slice(2, 5).map((path) => resolve(path));
 const looksOnly = process.argv[5] === 'look';
 const painter = process.argv[6] ?? 'card';
@@ -36,19 +34,8 @@ const check = (holds, what) => {
   failed ||= !holds;
 };
 
-const server = spawn(command, ['explore', scene, '--no-open'], { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] });
-const address = await new Promise((done, refuse) => {
-  server.stdout.once('data', (data) => done(String(data).trim()));
-  server.once('exit', () => refuse(new Error('the server has ended')));
-});
-
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-  headless: true,
-  args: ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
-    '--disable-background-networking', '--disable-component-update', '--disable-sync', '--force-color-profile=srgb',
-    '--disable-dev-shm-usage', '--hide-scrollbars'],
-});
+const { address, end } = await serve(command, [scene], folder);
+const browser = await launched();
 try {
   await proofs();
 } catch (error) {
@@ -57,7 +44,7 @@ try {
   failed = true;
 } finally {
   await browser.close();
-  server.kill();
+  end();
 }
 process.exit(failed ? 1 : 0);
 
@@ -69,7 +56,11 @@ async function proofs() {
   page.on('pageerror', (error) => errors.push(error.message));
   page.on('console', (message) => message.type() === 'error' && errors.push(`${message.text()} ${message.location().url.replace(address, '')}`));
   const kept = [];
-  page.on('websocket', (socket) => (socket.url().startsWith(address.replace('http:', 'ws:')) ? kept : outside).push(socket.url()));
+  const sent = [];
+  page.on('websocket', (socket) => {
+    (socket.url().startsWith(address.replace('http:', 'ws:')) ? kept : outside).push(socket.url());
+    socket.on('framesent', ({ payload }) => sent.push(String(payload)));
+  });
   page.on('request', (asked) => !asked.url().startsWith(address) && !/^(blob|data):/.test(asked.url()) && outside.push(asked.url()));
   await page.goto(`${address}?painter=${painter}`);
   const answer = await page.evaluate(async () => (await fetch('api/scene')).json());
@@ -82,11 +73,14 @@ async function proofs() {
   if (painter === 'processor') await mixes(page);
   await pixels(page, answer, answer.poses[0].at, 'at the first pose');
   if (plane) await probe(page, answer);
+  const tools = { page, scene, check, centre, drag, drawn, edited, saved, padPoint, sent };
+  await placesOfPicture(tools);
+  await placesOfMatches(tools);
+  await drawn(page);
   if (looksOnly) return reports(outside, kept);
   await keys(page);
   if (plane) await movedPose(page, answer);
   await landmark(page);
-  const tools = { page, scene, check, centre, drag, drawn, edited, saved, padPoint };
   await landmarkByKeys(tools);
   await lines(tools);
   if (plane) await gesture(page, answer);
@@ -129,32 +123,6 @@ async function strangers() {
   const read = await other.evaluate((url) => fetch(url).then(() => 'read', () => 'refused'), `${address}api/state`);
   check(read === 'refused', 'a page of another origin reads nothing, even with the token');
   await other.close();
-}
-
-// Waiting for what is shown.
-
-function state(page) {
-  return page.evaluate(async () => (await fetch('api/state')).json());
-}
-
-/** Waits until the page shows the newest state, at a place if one is given. */
-async function drawn(page, at = null) {
-  await page.waitForSelector('html[data-ready="true"]', { state: 'attached', timeout: 30000 });
-  for (;;) {
-    const now = await state(page);
-    if (now.working) {
-      await page.waitForTimeout(50);
-      continue;
-    }
-    await page.waitForFunction(([seq, weights, shape, place]) => {
-      const { dataset } = document.getElementById('picture');
-      return Number(document.documentElement.dataset.seq) >= seq && Number(dataset.weights) >= weights && Number(dataset.shape) >= shape &&
-        (place === null || dataset.at === place);
-    }, [now.seq, now.revisions.weights, now.revisions.shape, at && at.join(',')], { timeout: 15000 });
-    // One more displayed frame, so that it is on the screen.
-    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-    return now;
-  }
 }
 
 async function shownPlace(page) {
@@ -294,20 +262,6 @@ async function keys(page) {
   await page.locator('#probe').focus();
 }
 
-async function saved(page) {
-  for (;;) {
-    const now = await drawn(page);
-    if (now.saved && !now.dragging) return now;
-    await page.waitForTimeout(30);
-  }
-}
-
-/** The same after an edit has reached the server. */
-async function edited(page, label) {
-  await page.waitForFunction(async (wanted) => (await (await fetch('api/state')).json()).undo?.startsWith(wanted), label);
-  return saved(page);
-}
-
 async function movedPose(page, answer) {
   const bytes = readFileSync(scene);
   await page.keyboard.press('Home');
@@ -339,7 +293,7 @@ async function movedPose(page, answer) {
   const comments = (all) => all.split('\n').filter((line) => line.trim().startsWith('#')).join('\n');
   check(comments(text) === comments(String(bytes)), 'its comments stay');
   await page.keyboard.press('Control+z');
-  await page.waitForFunction(async () => (await (await fetch('api/state')).json()).undo === null);
+  await until(page, async () => (await (await fetch('api/state')).json()).undo === null);
   await saved(page);
   check(Buffer.compare(readFileSync(scene), bytes) === 0, 'undo restores the bytes');
   const undone = await weights(page);
@@ -422,7 +376,7 @@ async function landmark(page) {
   await page.click('#undo');
   await edited(page, 'add a landmark');
   await page.click('#undo');
-  await page.waitForFunction(async () => (await (await fetch('api/state')).json()).undo === null);
+  await until(page, async () => (await (await fetch('api/state')).json()).undo === null);
   await saved(page);
   check(Buffer.compare(readFileSync(scene), bytes) === 0, 'undo of the button restores the bytes');
   await page.click('[data-value="picture"]');
@@ -497,13 +451,13 @@ async function onPicture(page) {
   await page.locator('#place input').first().press('Enter');
   await page.click('#keep-bent');
   await edited(page, 'add a pose');
-  await page.waitForFunction(async (wanted) => (await (await fetch('api/scene')).json()).poses.length === wanted, count + 1, { timeout: 20000 }).catch(() => {});
+  await until(page, async (wanted) => (await (await fetch('api/scene')).json()).poses.length === wanted, count + 1, { timeout: 20000 }).catch(() => {});
   const after = await page.evaluate(async () => (await (await fetch('api/scene')).json()).poses);
   const made = after.find((pose) => pose.kind === 'deformed' && Math.abs(pose.at[0] - 0.37) < 1e-9);
   check(after.length === count + 1 && made, `handles make a new pose, '${made?.name}', at ${made?.at}`);
   await page.locator('#probe').focus();
   await page.keyboard.press('Control+z');
-  await page.waitForFunction(async () => (await (await fetch('api/state')).json()).undo === null);
+  await until(page, async () => (await (await fetch('api/state')).json()).undo === null);
   await saved(page);
   check(Buffer.compare(readFileSync(scene), bytes) === 0, 'undo restores the bytes after a new pose');
 }
@@ -534,11 +488,11 @@ async function gesture(page, answer) {
   run('render', scene, '-o', join(folder, `${name}-gesture.gif`), '--size', '120x120', '--quiet');
   check(readFileSync(join(folder, `${name}-gesture.gif`)).subarray(0, 4).toString() === 'GIF8', 'and renders');
   await page.keyboard.press('Control+z');
-  await page.waitForFunction(async () => (await (await fetch('api/state')).json()).undo === null);
+  await until(page, async () => (await (await fetch('api/state')).json()).undo === null);
   await saved(page);
   check(Buffer.compare(readFileSync(scene), bytes) === 0, 'undo restores the bytes after a gesture');
   await page.keyboard.press('Control+Shift+z');
-  await page.waitForFunction(async () => (await (await fetch('api/state')).json()).redo === null);
+  await until(page, async () => (await (await fetch('api/state')).json()).redo === null);
   await saved(page);
   check(String(readFileSync(scene)) === text, 'redo brings the gesture back');
   await page.keyboard.press('Control+z');
@@ -574,7 +528,7 @@ async function exported(page) {
   await page.getByLabel('Frames', { exact: true }).fill('1-3');
   await page.waitForFunction(() => document.querySelector('.dialog .command').textContent.includes('1-3'));
   await page.click('#export-start');
-  await page.waitForFunction(async () => ['done', 'failed'].includes((await (await fetch('api/state')).json()).job?.state), null, { timeout: 60000 });
+  await until(page, async () => ['done', 'failed'].includes((await (await fetch('api/state')).json()).job?.state), null, { timeout: 60000 });
   await page.waitForFunction(() => ['done', 'failed'].includes(document.querySelector('.said').dataset.state), null, { timeout: 5000 });
   const said = await page.textContent('.said');
   check(/done in/.test(said), `the export says: ${said}`);

@@ -1,5 +1,5 @@
 // PNG pictures of 8 bits a channel, without a library, and how far two are apart.
-import { inflateSync } from 'node:zlib';
+import { crc32, deflateSync, inflateSync } from 'node:zlib';
 
 /** {width, height, channels, pixels} of a PNG file without interlacing. */
 export function decodePng(bytes) {
@@ -31,6 +31,27 @@ export function decodePng(bytes) {
     }
   }
   return { width, height, channels, pixels };
+}
+
+/** A PNG file of red, green, blue, alpha at every pixel, as `colour(x, y)` has them. */
+export function encodePng(width, height, colour) {
+  const rows = Buffer.alloc((4 * width + 1) * height);
+  for (let y = 0; y < height; y++) {
+    for (let x = 0; x < width; x++) rows.set(colour(x, y), (4 * width + 1) * y + 1 + 4 * x);
+  }
+  const chunk = (kind, data) => {
+    const body = Buffer.concat([Buffer.from(kind), data]);
+    const ends = [Buffer.alloc(4), Buffer.alloc(4)];
+    ends[0].writeUInt32BE(data.length);
+    ends[1].writeUInt32BE(crc32(body));
+    return Buffer.concat([ends[0], body, ends[1]]);
+  };
+  const header = Buffer.alloc(13);
+  header.writeUInt32BE(width);
+  header.writeUInt32BE(height, 4);
+  header.set([8, 6], 8);
+  const signature = Buffer.from([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]);
+  return Buffer.concat([signature, chunk('IHDR', header), chunk('IDAT', deflateSync(rows)), chunk('IEND', Buffer.alloc(0))]);
 }
 
 function paeth(left, up, corner) {

@@ -126,10 +126,12 @@ pub(super) fn remove(document: &mut DocumentMut, context: &Context<'_>, pose: &s
 
 pub(super) fn set(document: &mut DocumentMut, pose: &str, key: &str, value: &Json) -> Result<(), Refusal> {
     match (key, value) {
-        ("mirror" | "turns", Json::Null) => {
+        ("mirror" | "turns" | "figure" | "gap" | "paper" | "threshold", Json::Null) => {
             named(document, "pose", pose)?.remove(key);
         }
-        ("mirror", Json::Bool(_)) | ("turns", Json::Number(_)) => {
+        ("mirror", Json::Bool(_))
+        | ("turns" | "gap" | "threshold", Json::Number(_))
+        | ("figure" | "paper", Json::String(_)) => {
             set_value(named(document, "pose", pose)?, key, from_json(value)?);
         }
         ("name", Json::String(name)) => rename(document, pose, name)?,

@@ -159,3 +159,37 @@ fn what_is_not_there_is_refused() {
     assert!(serde_json::from_value::<Op>(json!({"op": "explode"})).is_err());
     assert!(serde_json::from_value::<Op>(json!({"op": "remove_pose", "pose": "a", "b": 1})).is_err());
 }
+
+#[test]
+fn how_a_drawing_is_read_is_said_in_its_pose() {
+    let ops = json!([
+        {"op": "set_pose", "pose": "stand", "key": "figure", "value": "lines"},
+        {"op": "set_pose", "pose": "stand", "key": "gap", "value": 0.02},
+        {"op": "mark_part", "pose": "run", "list": "drop", "at": [12.5, 3]},
+        {"op": "mark_part", "pose": "run", "list": "drop", "at": [14, 5]},
+    ]);
+    let read = edited(SCENE, ops);
+    let (gone, new) = difference(SCENE, &read.text);
+    assert!(gone.is_empty(), "{gone:?}");
+    assert_eq!(
+        new,
+        ["figure = \"lines\"", "gap = 0.02", "drop = [[12.5, 3.0], [14.0, 5.0]]"]
+    );
+    let back = json!([
+        {"op": "set_pose", "pose": "stand", "key": "figure", "value": null},
+        {"op": "set_pose", "pose": "stand", "key": "gap", "value": null},
+        {"op": "unmark_part", "pose": "run", "list": "drop", "index": 1},
+        {"op": "unmark_part", "pose": "run", "list": "drop", "index": 0},
+    ]);
+    assert_eq!(edited(&read.text, back).text, SCENE);
+}
+
+#[test]
+fn what_is_written_between_places_of_parts_stays() {
+    let text = SCENE.replace(
+        "source = \"run.png\"\n",
+        "source = \"run.png\"\nkeep = [\n  [1.0, 2.0], # a spark\n  [3.0, 4.0], # another\n]\n",
+    );
+    let ops = json!([{"op": "unmark_part", "pose": "run", "list": "keep", "index": 1}]);
+    assert!(edited(&text, ops).text.contains("[1.0, 2.0], # a spark"));
+}

@@ -4,9 +4,15 @@ import { byId, h } from './dom.js';
 import { iconButton, segments, toggle } from './controls.js';
 import { icon } from './icons.js';
 import { copyCommand, openExport } from './export.js';
+import { isLayered } from './figures.js';
+import { openKeep } from './keep.js';
 import { openKeys } from './keyboard.js';
 import { actualSize, fit, frameView, zoomBy } from './view.js';
 import { flipTheme, isDark } from './theme.js';
+
+/** What is said over the sheets. */
+const PARTS = 'Click on a part to leave it out or take it back, elsewhere to ask for a part.';
+const ONE_LAYER = 'One layer of each drawing; which one is chosen with the landmarks.';
 
 const app = byId('app');
 const undo = iconButton('undo', 'Undo', () => asked('undo', {}), { id: 'undo' });
@@ -20,9 +26,10 @@ if (innerWidth < 1200) {
   app.dataset.inspector = 'closed';
   panel.update();
 }
+const save = h('button', { type: 'button', class: 'main hidden', id: 'keep', title: 'Name a folder for the scene', onclick: openKeep }, 'Save…');
 byId('bar-tools').append(undo, redo, h('span', { class: 'rule' }),
   h('button', { type: 'button', id: 'copy-command', title: 'Copy the command that draws this frame (C)', onclick: copyCommand }, icon('command'), h('span', { class: 'wide' }, 'Copy as command')),
-  h('button', { type: 'button', class: 'bordered', id: 'export', title: 'Render the animation (E)', onclick: openExport }, icon('export'), 'Export…'),
+  h('button', { type: 'button', class: 'bordered', id: 'export', title: 'Render the animation (E)', onclick: openExport }, icon('export'), 'Export…'), save,
   h('span', { class: 'rule' }), iconButton('keyboard', 'Keys', openKeys), theme, panel);
 
 const saved = byId('saved');
@@ -39,7 +46,10 @@ function drawState() {
   const [kind, text] = store.lost ? ['bad', 'The server does not answer']
     : state.save_error ? ['bad', 'Not saved']
       : state.working ? ['busy', 'Mapping…']
+        : state.temporary && state.saved ? ['busy', 'Not saved in a folder yet']
         : state.saved ? ['good', 'Saved'] : ['busy', 'Editing…'];
+  save.classList.toggle('hidden', !state.temporary);
+  byId('scene-file').textContent = state.temporary ? '' : store.scene?.file ?? '';
   saved.dataset.kind = kind;
   saved.replaceChildren(h('span', { class: 'dot' }), text);
   saved.title = state.save_error?.message ?? state.save_error ?? (state.timings?.mapping_ms ? `Last mapping: ${Math.round(state.timings.mapping_ms)} ms` : '');
@@ -65,24 +75,31 @@ function drawState() {
 
 // Over the picture.
 
-const main = segments('View', [['picture', 'Picture'], ['matches', 'Matches']], () => store.view.main, (value) => look({ main: value }));
+const main = segments('View', [['picture', 'Picture'], ['matches', 'Matches'], ['drawings', 'Drawings']], () => store.view.main, (value) => look({ main: value }));
 const tool = segments('Dragging the picture', [
   ['reach', icon('reach'), 'Pose: drag the drawing along the plane'], ['bend', icon('bend'), 'Bend: drag handles to a new pose'], ['pan', icon('hand'), 'Move the view'],
 ], () => store.view.tool, (value) => look({ tool: value }));
 const onion = segments('Onion skin', [['off', 'None'], ['poses', 'Poses'], ['path', 'Path']], () => store.view.onion, (value) => look({ onion: value }));
 const mesh = toggle('mesh', 'Mesh (M)', () => store.view.mesh, (value) => look({ mesh: value }));
 mesh.id = 'mesh';
+const places = toggle('places', 'The place under the pointer, in all drawings (P)', () => store.view.places, (value) => look({ places: value }));
+places.id = 'show-places';
 const marks = segments('New landmarks', [['point', icon('point'), 'Points: click where it is (L)'], ['line', icon('line'), 'Lines: click from point to point (L)']], () => store.view.mark, (value) => look({ mark: value }));
 const percent = h('button', { type: 'button', class: 'percent', title: 'Actual size (Shift 0)', id: 'actual-size', onclick: actualSize });
-const ofPicture = [tool, h('span', { class: 'onion' }, icon('onion'), onion)];
-byId('picture-tools').append(main, h('span', { class: 'rule' }), ...ofPicture, marks, mesh, h('span', { class: 'grow' }),
+const ofPicture = [tool, h('span', { class: 'onion' }, icon('onion'), onion), places];
+const told = h('span', { class: 'faint small clip' });
+byId('picture-tools').append(main, h('span', { class: 'rule' }), ...ofPicture, marks, mesh, told, h('span', { class: 'grow' }),
   h('span', { class: 'tools zoom' }, iconButton('minus', 'Zoom out', () => zoomBy(0.8)), percent, iconButton('plus', 'Zoom in', () => zoomBy(1.25)), iconButton('fit', 'Fit (0)', fit)));
 
 function drawView() {
-  [main, tool, onion, marks, mesh].forEach((control) => control.update());
-  const matches = store.view.main === 'matches';
-  [...ofPicture, byId('picture-tools').querySelector('.zoom')].forEach((element) => element.classList.toggle('hidden', matches));
-  marks.classList.toggle('hidden', !matches);
+  [main, tool, onion, marks, mesh, places].forEach((control) => control.update());
+  const shown = store.view.main;
+  const zoom = byId('picture-tools').querySelector('.zoom');
+  [...ofPicture, zoom].forEach((element) => element.classList.toggle('hidden', shown !== 'picture'));
+  marks.classList.toggle('hidden', shown !== 'matches');
+  mesh.classList.toggle('hidden', shown === 'drawings');
+  told.classList.toggle('hidden', shown !== 'drawings');
+  if (store.scene) told.textContent = isLayered() ? ONE_LAYER : PARTS;
 }
 
 on('state', drawState);
@@ -94,6 +111,5 @@ on('theme', () => theme.replaceChildren(icon(isDark() ? 'sun' : 'moon')));
 theme.replaceChildren(icon(isDark() ? 'sun' : 'moon'));
 on('scene', () => {
   byId('scene-name').textContent = store.scene.name;
-  byId('scene-file').textContent = store.scene.file;
   document.title = `${store.scene.name} – inbetween`;
 });

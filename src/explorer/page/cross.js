@@ -2,6 +2,7 @@
 import { clamp, set } from './dom.js';
 import { match } from './match.js';
 import { put, trailTo } from './marking.js';
+import { pointAway, sayPoint } from './pointed.js';
 import { emit, rounded } from './state.js';
 
 /** Pixels that an arrow key moves the cross, and with Shift. */
@@ -10,15 +11,16 @@ const FINE_STEP = 1;
 
 const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-/** Lets the keyboard into a cell; `unit(cell)`: drawing units of a pixel. */
-export function attachCross(cell, unit) {
+/** Lets the keyboard into a cell; `unit(cell)`: drawing units of a pixel; `point(place)` is told where the cross is. */
+export function attachCross(cell, unit, point) {
   const { drawing } = cell;
   set(drawing, { tabindex: 0, role: 'application', 'aria-roledescription': 'drawing' });
   drawing.addEventListener('focus', () => {
     // A pointer shows where it is by itself.
-    if (cell.pose.drawn && drawing.matches(':focus-visible')) move(cell, startOf(cell));
+    if (cell.pose.drawn && drawing.matches(':focus-visible')) move(cell, startOf(cell), point);
   });
   drawing.addEventListener('blur', () => {
+    if (cell.cross) pointAway();
     cell.cross = null;
     tell(cell);
     emit('held');
@@ -28,7 +30,7 @@ export function attachCross(cell, unit) {
     const way = WAYS[event.key];
     if (way) {
       const step = (event.shiftKey ? FINE_STEP : STEP) * unit(cell);
-      move(cell, cell.cross.map((value, axis) => value + way[axis] * step));
+      move(cell, cell.cross.map((value, axis) => value + way[axis] * step), point);
     } else if (event.key === ' ') put(cell, cell.cross);
     else return;
     event.preventDefault();
@@ -42,11 +44,13 @@ function startOf({ pose, box: [left, top, width, height] }) {
   return fresh && !match.fresh.path ? fresh : [left + 0.5 * width, top + 0.5 * height];
 }
 
-function move(cell, [x, y]) {
+function move(cell, [x, y], point) {
   const [left, top, width, height] = cell.view;
   cell.cross = [rounded(clamp(x, left, left + width), 2), rounded(clamp(y, top, top + height), 2)];
   trailTo(cell, cell.cross);
   tell(cell);
+  point(cell.cross);
+  sayPoint();
   emit('held');
 }
 

@@ -2,6 +2,7 @@
 import { postJson, postWords } from './api.js';
 import { follow, h, s, set } from './dom.js';
 import { framesOf } from './frames.js';
+import { onMesh, partsIn, placed } from './located.js';
 import { drawingView, toDrawing, toStage } from './view.js';
 import { edit, emit, moveTo, on, rounded, store } from './state.js';
 
@@ -37,7 +38,7 @@ function reach(event) {
   const from = under(event);
   const hit = layerUnder(from);
   if (hit === null) return;
-  const anchor = onMesh(hit, from);
+  const anchor = onLayer(hit, from);
   const begun = store.place.slice();
   let wanted = null;
   let asking = false;
@@ -72,22 +73,12 @@ function reach(event) {
 
 /** The foremost layer with a triangle under a place of the drawing. */
 function layerUnder(place) {
-  for (const k of store.frame.order.slice().reverse()) if (onMesh(k, place)) return k;
+  for (const k of store.frame.order.slice().reverse()) if (onLayer(k, place)) return k;
   return null;
 }
 
-/** The triangle under a place, and where in it. */
-function onMesh(layer, [x, y], points = store.frame.layers[layer].positions) {
-  const { triangles } = store.meshes[layer];
-  for (let t = 0; t < triangles.length; t += 3) {
-    const [a, b, c] = [0, 1, 2].map((k) => triangles[t + k]);
-    const parts = partsIn([a, b, c], points, x, y);
-    if (Math.min(...parts) >= 0) return { corners: [a, b, c], parts };
-  }
-  return null;
-}
-
-const placed = ({ corners, parts }, points) => [0, 1].map((d) => corners.reduce((sum, v, k) => sum + parts[k] * points[2 * v + d], 0));
+/** The point of a layer's mesh under a place. */
+const onLayer = (layer, place, points = store.frame.layers[layer].positions) => onMesh(store.meshes[layer].triangles, points, place);
 
 // A new pose by handles: on the drawing of the pose that is chosen, or the nearest.
 
@@ -144,14 +135,6 @@ function carriers(layer, points, ring) {
     carried.push(best);
   }
   return carried;
-}
-
-function partsIn([a, b, c], points, x, y) {
-  const [ax, ay] = [points[2 * a], points[2 * a + 1]];
-  const [ux, uy, vx, vy] = [points[2 * b] - ax, points[2 * b + 1] - ay, points[2 * c] - ax, points[2 * c + 1] - ay];
-  const area = ux * vy - uy * vx;
-  const [p, q] = [((x - ax) * vy - (y - ay) * vx) / area, (ux * (y - ay) - uy * (x - ax)) / area];
-  return [1 - p - q, p, q];
 }
 
 let latest = null;
@@ -213,7 +196,7 @@ function bendPress(event) {
   if (!handle) {
     const own = store.meshes[store.layer].poses[layerPose(basis)];
     const shown = shownBent();
-    const hit = onMesh(store.layer, at, shown);
+    const hit = onLayer(store.layer, at, shown);
     if (!hit) return;
     handle = { from: placed(hit, own), to: at };
     handles.push(handle);

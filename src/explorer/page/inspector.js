@@ -2,6 +2,7 @@
 import { byId, h } from './dom.js';
 import { iconButton, menu, numberField, row, segments, slider } from './controls.js';
 import { icon } from './icons.js';
+import { readingPanel } from './reading.js';
 import { choosePose, Drag, edit, look, moveTo, on, onChange, rounded, store } from './state.js';
 
 const root = byId('inspector');
@@ -64,6 +65,7 @@ function buildScene() {
   const radial = live(menu('Radial function', [['b-spline', 'B-spline'], ['thin-plate', 'Thin plate']], () => space().radial, (v) => setting('pose_space', 'radial', v)));
   const children = [
     problemsOf('file', 'space'),
+    readingPanel,
     poseSection(),
     section('Weights',
       row('Provider', live(segments('Provider', [['biharmonic', 'Biharmonic'], ['rbf', 'Radial']], () => space().provider, (v) => setting('pose_space', 'provider', v)))),

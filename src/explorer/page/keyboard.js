@@ -21,22 +21,25 @@ const KEYS = [
   [[',', '.'], 'One frame back or on', (e) => e.key === ',' || e.key === '.', (e) => stepFrame(e.key === ',' ? -1 : 1)],
   [['R'], 'Record a gesture', (e) => e.key === 'r', () => arm(!isArmed())],
   [['M'], 'Mesh', (e) => e.key === 'm', () => look({ mesh: !store.view.mesh })],
+  [['P'], 'The place under the pointer, in all drawings', (e) => e.key === 'p', () => look({ places: !store.view.places })],
   [['O'], 'Onion skin: off, poses, path', (e) => e.key === 'o', () => look({ onion: cycle(['off', 'poses', 'path'], store.view.onion) })],
   [['W'], 'The plane shows: nothing, weight, validity', (e) => e.key === 'w', () => look({ map: cycle(['plain', 'weight', 'validity'], store.view.map) })],
   [['S'], 'Snap', (e) => e.key === 's', () => look({ snap: !store.view.snap })],
   [['B'], 'Compare: hold for B', null],
-  [['Tab', 'V'], 'Picture or matches', (e) => e.key === 'v', () => look({ main: store.view.main === 'picture' ? 'matches' : 'picture' })],
+  [['Tab', 'V'], 'Picture, matches or drawings', (e) => e.key === 'v', () => look({ main: cycle(['picture', 'matches', 'drawings'], store.view.main) })],
   [['L'], 'New landmarks: points or lines', (e) => e.key === 'l', () => look({ mark: store.view.mark === 'line' ? 'point' : 'line' })],
   [['0'], 'Fit; with Shift, actual size', (e) => e.code === 'Digit0', (e) => (e.shiftKey ? actualSize() : fit())],
   [['+', '−'], 'Zoom', (e) => ['+', '=', '-'].includes(e.key), (e) => zoomBy(e.key === '-' ? 0.8 : 1.25)],
   [['C'], 'Copy as command', (e) => e.key === 'c', () => copyCommand()],
   [['E'], 'Export', (e) => e.key === 'e', () => openExport()],
   [['←', '↑', '↓', '→', 'Space'], 'On a drawing of the matches: move a cross; put a landmark or the next point of a line there', null],
+  [['←', '↑', '↓', '→'], 'On the picture: move a cross, whose place is shown in all drawings', null],
+  [['Tab', 'Enter'], 'On the drawings: go from part to part; leave it out or take it back', null],
   [['Enter'], 'End the line; add the new landmark', null],
   [['Ctrl', 'Z'], 'Undo; with Shift, redo', null],
   [['?'], 'This list', (e) => e.key === '?', () => openKeys()],
 ];
-KEYS.find(([keys]) => keys[0] === 'Tab')[0].shift();
+KEYS.find(([keys]) => keys[1] === 'V')[0].shift();
 
 const dialog = h('dialog', { class: 'dialog keys-dialog', 'aria-label': 'Keys' },
   h('header', {}, h('h2', {}, 'Keys'), h('span', { class: 'grow' }), iconButton('close', 'Close', () => dialog.close())),

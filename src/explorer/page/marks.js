@@ -2,6 +2,7 @@
 import { s, set } from './dom.js';
 import { isUpright } from './geometry.js';
 import { match, ownLandmarks, placesOf } from './match.js';
+import { pointOn } from './pointed.js';
 import { store } from './state.js';
 
 /** Whether a layer of a cell was not made of the very same things already: what is not touched is not painted again. */
@@ -33,8 +34,14 @@ export function drawCell(cell, px) {
     return links.flatMap((link, k) => (link.landmark ? [] : numbered(link.at[index], k, link.hue, px, roomy)));
   });
   drawMarks(cell, px);
+  const point = pointOn(store.layer, index);
+  fill(layers.spot, [...(point ?? []), px], () => (point ? [spot(point, px)] : []));
   fill(layers.cross, [cell.cross, px], () => (cell.cross ? [cross(cell.cross, px)] : []));
 }
+
+/** Where the point under the pointer is. */
+const spot = ([cx, cy], px) => s('g', {},
+  s('circle', { class: 'halo', cx, cy, r: 6 * px, 'stroke-width': 4.5 * px }), s('circle', { cx, cy, r: 6 * px, 'stroke-width': 2 * px }), s('circle', { class: 'middle', cx, cy, r: 1.5 * px }));
 
 /** Where the keyboard is. */
 const cross = ([x, y], px) => s('path', { d: [[-1, 0], [1, 0], [0, -1], [0, 1]].map(([dx, dy]) => `M${x + 3 * dx * px} ${y + 3 * dy * px}L${x + 16 * dx * px} ${y + 16 * dy * px}`).join(''), 'stroke-width': 2 * px });

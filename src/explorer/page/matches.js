@@ -6,7 +6,9 @@ import { icon } from './icons.js';
 import { drawTray, press, pressTwice, tray } from './marking.js';
 import { drawCell } from './marks.js';
 import { match, takeMatch } from './match.js';
+import { attachPointer, pointOnPose } from './pointed.js';
 import { emit, on, store } from './state.js';
+import { tile } from './tiling.js';
 
 const root = h('div', { class: 'matches hidden', id: 'matches' });
 byId('stage').append(root);
@@ -48,7 +50,7 @@ function build() {
   cells = match.data.poses.map((pose, index) => {
     const box = bounds(pose);
     const drawing = s('svg', { class: 'drawing', 'aria-label': `Drawing of ${pose.name}: arrow keys move a cross, Space puts a landmark there`, preserveAspectRatio: 'xMidYMid meet' });
-    const layers = Object.fromEntries(['picture', 'mesh', 'outline', 'links', 'marks', 'cross'].map((name) => [name, s('g', { class: name })]));
+    const layers = Object.fromEntries(['picture', 'mesh', 'outline', 'links', 'marks', 'spot', 'cross'].map((name) => [name, s('g', { class: name })]));
     drawing.append(...Object.values(layers));
     const warning = h('span', { class: 'warning' });
     const where = h('span', { class: 'faint small', role: 'status' });
@@ -62,7 +64,8 @@ function build() {
     }
     cell.view = box;
     set(drawing, { viewBox: box.join(' ') });
-    attachCross(cell, unit);
+    attachCross(cell, unit, (place) => pointFrom(cell, place));
+    attachPointer(drawing, (event) => pointFrom(cell, placeUnder(event, cell)));
     drawing.addEventListener('wheel', (event) => zoomCell(event, cell), { passive: false });
     drawing.addEventListener('dblclick', (event) => pressTwice(event, cell) || showBox(cell, cell.box));
     drawing.addEventListener('pointerdown', (event) => press(event, cell));
@@ -91,31 +94,33 @@ function showBox(cell, view) {
   draw();
 }
 
+/** The place of a drawing under the pointer. */
+function placeUnder(event, cell) {
+  const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(cell.drawing.getScreenCTM().inverse());
+  return [point.x, point.y];
+}
+
+/** Points at a place of a drawing, on all drawings; on the mesh of the match that is shown. */
+function pointFrom(cell, place) {
+  if (match.data.shape !== store.puppet?.shape) return;
+  const pose = match.data.poses[cell.index];
+  if (pose.outline) pointOnPose(store.layer, cell.index, [pose.outline, ...pose.holes], place);
+}
+
 /** Around the pointer, never farther than the whole drawing. */
 function zoomCell(event, cell) {
   event.preventDefault();
-  const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(cell.drawing.getScreenCTM().inverse());
+  const [px, py] = placeUnder(event, cell);
   const [left, top, w, h_] = cell.view;
   const factor = clamp(Math.exp(event.deltaY * 0.0016), (0.04 * cell.box[2]) / w, cell.box[2] / w);
-  const x = clamp(point.x - (point.x - left) * factor, cell.box[0], cell.box[0] + cell.box[2] - w * factor);
-  const y = clamp(point.y - (point.y - top) * factor, cell.box[1], cell.box[1] + cell.box[3] - h_ * factor);
+  const x = clamp(px - (px - left) * factor, cell.box[0], cell.box[0] + cell.box[2] - w * factor);
+  const y = clamp(py - (py - top) * factor, cell.box[1], cell.box[1] + cell.box[3] - h_ * factor);
   showBox(cell, [x, y, w * factor, h_ * factor]);
 }
 
-/** As many columns as make the drawings largest. */
 function arrange() {
   if (cells.length === 0) return;
-  const [width, height] = [root.clientWidth - 24, root.clientHeight - 24];
-  const shapes = cells.map(({ box }) => box[2] / box[3]);
-  let best = [0, 1];
-  for (let columns = 1; columns <= cells.length; columns++) {
-    const rows = Math.ceil(cells.length / columns);
-    const [w, h_] = [(width - 10 * (columns - 1)) / columns - 12, (height - 10 * (rows - 1)) / rows - 42];
-    const size = Math.min(...shapes.map((shape) => Math.min(w, h_ * shape) / Math.sqrt(shape)));
-    if (size > best[0]) best = [size, columns];
-  }
-  root.style.setProperty('--columns', best[1]);
-  root.style.setProperty('--rows', Math.ceil(cells.length / best[1]));
+  tile(root, cells.map(({ box }) => box[2] / box[3]));
   cells.forEach((cell) => (cell.size = null));
   draw();
 }
@@ -170,5 +175,5 @@ on('match-stale layer', read);
 on('scene', () => match.data || read());
 // What is about to be drawn with the answer is not drawn before it.
 on('scene state', () => reading > 0 || draw());
-on('marks held', draw);
+on('marks held pointed', draw);
 new ResizeObserver(arrange).observe(root);

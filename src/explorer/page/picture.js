@@ -7,7 +7,7 @@ import { framesOf } from './frames.js';
 import { extentOfAll } from './geometry.js';
 import { painterOf } from './painter.js';
 import { readSurfaces, Surface } from './surface.js';
-import { drawingView, frameSize, frameView, panBy, zoomBy } from './view.js';
+import { drawingView, frameGrid, frameSize, frameView, panBy, zoomBy } from './view.js';
 import { attachHandles, drawHandles, pictureDrag } from './handles.js';
 
 const stage = byId('stage');
@@ -47,7 +47,7 @@ function draw() {
   const background = store.scene?.animation?.background;
   paper.style.background = background && background !== 'transparent' ? background : '';
   paper.classList.toggle('hidden', !store.frame?.layers.length);
-  note.textContent = store.scene && !(store.state.revisions.shape > 0) ? 'There is no drawing yet: the scene cannot be mapped. Matches shows what can be read.' : '';
+  note.textContent = store.scene && !(store.state.revisions.shape > 0) ? 'There is no drawing yet: the scene cannot be mapped. Drawings shows what was taken for the figure of each.' : '';
   // While new meshes are on their way the last picture stays.
   if (store.frame?.layers.length && (loaded !== store.puppet || store.frame.shape !== loaded?.shape)) return;
   if (!store.frame?.layers.length) {
@@ -57,19 +57,19 @@ function draw() {
   const view = drawingView();
   store.pixel = 1 / (view.scale * ratio);
   painter.begin({ scale: view.scale * ratio, x: view.x * ratio, y: view.y * ratio });
-  const inLight = store.scene.texture?.blending === 'linear';
+  const looks = { inLight: store.scene.texture?.blending === 'linear', grid: frameGrid() };
   const accent = styled('--accent', 1);
-  under.forEach((frame) => paint(frame, { opacity: 0.2, tint: [...accent.slice(0, 3), 0.45], inLight }));
+  under.forEach((frame) => paint(frame, { ...looks, opacity: 0.2, tint: [...accent.slice(0, 3), 0.45] }));
   const shown = handled() ?? store.frame;
   if (shown.layers.length === painter.layers.length) {
-    paint(shown, { inLight });
+    paint(shown, looks);
     if (store.view.mesh) painter.wires(shown, store.meshes, { line: [0.2 * 0.8, 0.33 * 0.8, 0.85 * 0.8, 0.8], wrong: [0.82, 0.18, 0.15, 1], thickness: 0.35 * ratio });
   }
   drawHandles();
   const inverted = shown.inverted;
   badge.classList.toggle('hidden', !(inverted > 0));
   badge.textContent = `${inverted} inverted ${inverted === 1 ? 'triangle' : 'triangles'}`;
-  canvas.setAttribute('aria-label', `The drawing at ${store.place.map((v) => short(v)).join(', ')}${inverted > 0 ? `, ${inverted} triangles inverted` : ''}`);
+  canvas.setAttribute('aria-label', `The drawing at ${store.place.map((v) => short(v)).join(', ')}${inverted > 0 ? `, ${inverted} triangles inverted` : ''}: arrow keys move a cross, whose place is told for all drawings`);
   tellWhat();
   emit('drawn');
 }
@@ -114,9 +114,10 @@ async function drawThumbnails() {
     if (shown.length === 0 || frame.layers.length !== painter.layers.length || side < 16) return;
     const [low, high] = extentOfAll(shown);
     const scale = (side - 4) / Math.max(high[0] - low[0], high[1] - low[1]);
-    painter.begin({ scale, x: 2 - low[0] * scale, y: 2 - low[1] * scale });
-    paint(frame, { inLight: store.scene.texture?.blending === 'linear' });
-    emit('thumbnail', { pose, canvas, box: [0, 0, Math.ceil((high[0] - low[0]) * scale) + 4, Math.ceil((high[1] - low[1]) * scale) + 4] });
+    const view = { scale, x: 2 - low[0] * scale, y: 2 - low[1] * scale };
+    painter.begin(view);
+    paint(frame, { inLight: store.scene.texture?.blending === 'linear', grid: frameGrid() });
+    emit('thumbnail', { pose, canvas, view, frame, box: [0, 0, Math.ceil((high[0] - low[0]) * scale) + 4, Math.ceil((high[1] - low[1]) * scale) + 4] });
   });
   draw();
 }
@@ -130,20 +131,26 @@ let loading = 0;
 let pictures = null;
 /** Whether they were registered to one another. */
 let registered;
+/** One of the pictures of a layer. */
+async function picture(layer, index, kind) {
+  const answer = await fetch(`api/texture?layer=${layer}&index=${index}&kind=${kind}&v=${store.puppet.pictures}`);
+  return createImageBitmap(await answer.blob(), { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
+}
+
 async function load() {
   const mine = ++loading;
   const { puppet, meshes } = store;
   try {
-    const fine = getWords('surface');
-    const bitmaps = pictures === puppet.pictures ? null : await Promise.all(puppet.layers.map((layer, l) => Promise.all(layer.textures.map(async (_, k) => {
-      const answer = await fetch(`api/texture?layer=${l}&index=${k}&kind=colour&v=${puppet.pictures}`);
-      return createImageBitmap(await answer.blob(), { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
-    }))));
-    const finer = readSurfaces(await fine);
+    const all = (kind) => Promise.all(puppet.layers.map((layer, l) => Promise.all(layer.textures.map((_, k) => picture(l, k, kind)))));
+    const isKnown = pictures === puppet.pictures;
+    const [words, bitmaps, masks] = await Promise.all([
+      getWords('surface'), isKnown ? null : all('colour'), isKnown || !puppet.nearest ? null : all('inside'),
+    ]);
     if (mine !== loading) return;
+    const finer = readSurfaces(words);
     surfaces = meshes.map((mesh, k) => new Surface(mesh, finer[k]));
     registered = store.scene?.texture?.register;
-    painter.load(puppet, surfaces, bitmaps);
+    painter.load(puppet, surfaces, bitmaps, masks);
     pictures = puppet.pictures;
     loaded = puppet;
     document.documentElement.dataset.shape = puppet.shape;

@@ -3,9 +3,10 @@
 // first, each pixel once (by the depth buffer).
 import { coveredAreas } from './areas.js';
 import { pictureTexture, program, texture } from './gl.js';
-import { MESH, textured } from './shaders.js';
+import { MESH, SQUARES, textured } from './shaders.js';
 import { shownTextures, texelsOf, texturePlaces, windowOf } from './shown.js';
 import { attribute, SkirtedMesh } from './skirted.js';
+import { Squares } from './squares.js';
 
 /** Textures that are drawn at once; of more, the heaviest. WebGL2 has 15 varyings for sure, and 16 attributes and pictures, of which
  * one holds places and one areas. */
@@ -27,10 +28,15 @@ export class PuppetPainter {
     this.mesh = program(this.gl, ...MESH);
     this.corners = { array: this.gl.createVertexArray(), buffer: this.gl.createBuffer() };
     this.areas = null;
+    /** Of scenes that show nearest texels. */
+    this.squares = null;
   }
 
-  /** Takes `api/puppet`, a `Surface` a layer and, per layer and texture, a bitmap; without bitmaps the pictures that are there stay. */
-  load(puppet, surfaces, bitmaps) {
+  /** Takes `api/puppet`, a `Surface` a layer and, per layer and texture, a bitmap, of nearest texels also a mask; without bitmaps the pictures
+   * that are there stay. */
+  load(puppet, surfaces, bitmaps, masks) {
+    if (bitmaps) this.squares = puppet.nearest ? new Squares() : null;
+    this.squares?.load(puppet, surfaces, bitmaps, masks);
     this.layers.forEach((layer) => layer.mesh.free());
     if (bitmaps) {
       this.pictures.flat().forEach((picture) => this.gl.deleteTexture(picture));
@@ -60,9 +66,13 @@ export class PuppetPainter {
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  /** Draws a frame on what is there. */
-  frame(frame, { opacity = 1, tint = [0, 0, 0, 0], inLight = false } = {}) {
+  /** Draws a frame on what is there; nearest texels on the `grid` of the scene's frames. */
+  frame(frame, { opacity = 1, tint = [0, 0, 0, 0], inLight = false, grid } = {}) {
     const { gl } = this;
+    if (this.squares) {
+      this.squareFrame(frame, opacity, { tint, inLight }, grid);
+      return;
+    }
     for (const k of frame.order) {
       const shape = frame.layers[k];
       const layer = this.layers[k];
@@ -73,6 +83,30 @@ export class PuppetPainter {
       gl.enable(gl.SCISSOR_TEST);
       gl.scissor(window[0], this.canvas.height - window[3], window[2] - window[0], window[3] - window[1]);
       this.drawLayer(layer, shape, opacity * shape.opacity, tint, inLight);
+    }
+  }
+
+  /** Draws a frame's pixels as squares. */
+  squareFrame(frame, opacity, looks, grid) {
+    const { gl, canvas, view: [scale, x, y] } = this;
+    const size = scale / grid.scale;
+    const { made, at } = (this.programs.squares ??= program(gl, ...SQUARES));
+    gl.useProgram(made);
+    gl.uniform1i(at.picture, 0);
+    gl.uniform2f(at.size, canvas.width, canvas.height);
+    gl.bindVertexArray(null);
+    for (const k of frame.order) {
+      const shape = frame.layers[k];
+      const painted = shape.opacity > 0 ? this.squares.paint(k, shape, grid, looks) : null;
+      if (!painted) continue;
+      const { left, top, image } = painted;
+      gl.activeTexture(gl.TEXTURE0);
+      const picture = texture(gl, gl.RGBA8, image.width, image.height);
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, image.width, image.height, gl.RGBA, gl.UNSIGNED_BYTE, image.data);
+      gl.uniform4f(at.box, (left - grid.x) * size + x, (top - grid.y) * size + y, image.width * size, image.height * size);
+      gl.uniform1f(at.opacity, opacity * shape.opacity);
+      gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+      gl.deleteTexture(picture);
     }
   }
 

@@ -6,6 +6,7 @@ import { LightMix, PlainMix } from './mixing.js';
 import { Scan } from './scan.js';
 import { shownTextures, texelsOf, texturePlaces, windowOf } from './shown.js';
 import { Skirt } from './skirt.js';
+import { Squares } from './squares.js';
 import { Texels } from './texels.js';
 
 /** Textures that are drawn at once; of more, the heaviest. */
@@ -21,10 +22,14 @@ export class ScannedPainter {
     this.scan = new Scan(MOST_TEXTURES);
     this.image = null;
     this.mixes = null;
+    /** Of scenes that show nearest texels. */
+    this.squares = null;
   }
 
   /** As `PuppetPainter.load`. */
-  load(puppet, surfaces, bitmaps) {
+  load(puppet, surfaces, bitmaps, masks) {
+    if (bitmaps) this.squares = puppet.nearest ? new Squares() : null;
+    this.squares?.load(puppet, surfaces, bitmaps, masks);
     if (bitmaps) this.pictures = bitmaps.map((layer) => layer.map((bitmap) => new Texels(bitmap)));
     this.layers = puppet.layers.map(({ textures }, k) => {
       const mesh = surfaces[k];
@@ -56,8 +61,12 @@ export class ScannedPainter {
     this.mixes = { plain: new PlainMix(canvas.width), light: new LightMix(canvas.width) };
   }
 
-  /** Draws a frame on what is there. */
-  frame(frame, { opacity = 1, tint = [0, 0, 0, 0], inLight = false } = {}) {
+  /** Draws a frame on what is there; nearest texels on the `grid` of the scene's frames. */
+  frame(frame, { opacity = 1, tint = [0, 0, 0, 0], inLight = false, grid } = {}) {
+    if (this.squares) {
+      this.squareFrame(frame, opacity, { tint, inLight }, grid);
+      return;
+    }
     const mix = inLight ? this.mixes.light : this.mixes.plain;
     for (const k of frame.order) {
       const shape = frame.layers[k];
@@ -78,6 +87,25 @@ export class ScannedPainter {
       }, window, this.pixels, this.canvas.width);
       this.put(window);
     }
+  }
+
+  /** Draws a frame's pixels as squares. */
+  squareFrame(frame, opacity, looks, grid) {
+    const { context, view: [scale, x, y] } = this;
+    const size = scale / grid.scale;
+    context.imageSmoothingEnabled = false;
+    for (const k of frame.order) {
+      const shape = frame.layers[k];
+      const painted = shape.opacity > 0 ? this.squares.paint(k, shape, grid, looks) : null;
+      if (!painted) continue;
+      const { left, top, image } = painted;
+      const sheet = new OffscreenCanvas(image.width, image.height);
+      sheet.getContext('2d').putImageData(image, 0, 0);
+      context.globalAlpha = opacity * shape.opacity;
+      context.drawImage(sheet, (left - grid.x) * size + x, (top - grid.y) * size + y, image.width * size, image.height * size);
+    }
+    context.globalAlpha = 1;
+    this.isClear = false;
   }
 
   /** Puts what was painted over what is there. */

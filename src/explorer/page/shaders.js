@@ -64,3 +64,22 @@ void main() {
   float near = clamp(thickness + 0.5 - min(far.x, min(far.y, far.z)), 0.0, 1.0);
   colour = gl_FrontFacing ? line * near : mix(wrong * 0.45, wrong, near);
 }`];
+
+/** A picture whose texels are shown as squares, in a box of the canvas: left, top, width and height in pixels. */
+export const SQUARES = [`
+uniform vec2 size; // of the canvas, in pixels
+uniform vec4 box;
+out vec2 at;
+void main() {
+  at = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+  vec2 clip = (box.xy + at * box.zw) / size * 2.0 - 1.0;
+  gl_Position = vec4(clip.x, -clip.y, 0.0, 1.0);
+}`, `
+uniform sampler2D picture;
+uniform float opacity;
+in vec2 at;
+out vec4 colour;
+void main() {
+  vec4 texel = texture(picture, at);
+  colour = vec4(texel.rgb * texel.a, texel.a) * opacity;
+}`];

@@ -3,9 +3,13 @@
 // Events: `changing` (what changed is being asked for), `scene`, `state`, `shape` (meshes or pictures), `weights` (weights of the same
 // places may differ), `place` (the probe), `frame` (a frame arrived), `view` (what is shown and how), `pose` (another pose is looked
 // at), `gesture` (a path to be saved); `match` (the match arrived), `match-stale` (it is not what was edited), `layer` (the matches
-// show another one), `marks` (what is chosen or new), `held` (where it is dragged); `bent` (a frame that handles bend); `drawn` and
-// `matched` (frame or match are on the screen).
+// show another one), `marks` (what is chosen or new), `held` (where it is dragged); `pointed` (another point of the figure is under the
+// pointer); `bent` (a frame that handles bend); `figures` (what was taken for the figures arrived); `drawn` and `matched` (frame or
+// match are on the screen).
 import { getJson, getWords, postJson, readMeshes, Refused } from './api.js';
+
+/** Height of a window, in CSS pixels, from which on the strip of all drawings leaves enough to the picture. */
+const ROOM_FOR_PLACES = 760;
 
 export const store = {
   /** `api/state`, `api/scene`, `api/puppet`, `api/mesh`. */
@@ -22,12 +26,13 @@ export const store = {
   pose: null,
   layer: 0,
   view: {
-    main: 'picture', // or 'matches'
+    main: 'picture', // or 'matches', 'drawings'
     map: 'plain', // or 'weight', 'validity'
     tool: 'reach', // or 'pan', 'bend'
     onion: 'off', // or 'poses', 'path'
     mark: 'point', // or 'line': what a click on a drawing begins
     mesh: false,
+    places: innerHeight >= ROOM_FOR_PLACES, // the point under the pointer, in all drawings
     snap: false,
     compare: null, // settings shown beside the scene's own
   },

@@ -6,6 +6,8 @@ const stage = byId('stage');
 
 /** Free room around the frame when it is fitted, in CSS pixels. */
 const ROOM = 20;
+/** CSS pixels a frame pixel at most: of sprites every pixel is looked at. */
+const LARGEST = 64;
 /** `null`: fitted. Otherwise CSS pixels a frame pixel and the frame's corner. */
 let zoomed = null;
 /** Of the frame: fallbacks for scenes without animation. */
@@ -16,15 +18,23 @@ export function frameView() {
   if (zoomed) return zoomed;
   const [width, height] = frameSize();
   const [w, h_] = [stage.clientWidth, stage.clientHeight];
-  const scale = Math.max(0.02, Math.min((w - 2 * ROOM) / width, (h_ - 2 * ROOM) / height));
+  const fitted = Math.max(0.02, Math.min((w - 2 * ROOM) / width, (h_ - 2 * ROOM) / height));
+  // Squares are all of one size.
+  const scale = store.puppet?.nearest && fitted > 1 ? Math.floor(fitted * devicePixelRatio) / devicePixelRatio : fitted;
   return { scale, x: Math.round((w - width * scale) / 2), y: Math.round((h_ - height * scale) / 2) };
+}
+
+/** Pixels of the frame a drawing unit, and where the origin of drawings is. */
+export function frameGrid() {
+  const { scale, shift: [x, y] } = store.scene?.camera ?? { scale: 1, shift: [0, 0] };
+  return { scale, x, y };
 }
 
 /** CSS pixels a drawing unit, and where the origin of drawings is. */
 export function drawingView() {
   const { scale, x, y } = frameView();
-  const camera = store.scene?.camera ?? { scale: 1, shift: [0, 0] };
-  return { scale: scale * camera.scale, x: x + camera.shift[0] * scale, y: y + camera.shift[1] * scale };
+  const grid = frameGrid();
+  return { scale: scale * grid.scale, x: x + grid.x * scale, y: y + grid.y * scale };
 }
 
 export const toDrawing = ([x, y], view = drawingView()) => [(x - view.x) / view.scale, (y - view.y) / view.scale];
@@ -38,7 +48,7 @@ export function fit() {
 /** Zooms by a factor around a place of the stage; its middle if there is none. */
 export function zoomBy(factor, [px, py] = [stage.clientWidth / 2, stage.clientHeight / 2]) {
   const { scale, x, y } = frameView();
-  const next = clamp(scale * factor, 0.05, 16);
+  const next = clamp(scale * factor, 0.05, LARGEST);
   zoomed = { scale: next, x: px - ((px - x) * next) / scale, y: py - ((py - y) * next) / scale };
   emit('zoom');
 }

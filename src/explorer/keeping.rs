@@ -1,0 +1,149 @@
+//! Scenes that were begun for drawings: they lie in a temporary folder until the artist names another one.
+//!
+//! The scene uses copies of the drawings, since a scene's drawings lie in its folder. Until it is kept elsewhere, the copies follow the
+//! drawings that they were made of.
+
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use inbetween::export::PendingFile;
+use inbetween::scene::Scene;
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::problem::{Problem, Refusal};
+use super::session::Session;
+
+/// What the scene file of a folder is called.
+const SCENE_FILE: &str = "scene.toml";
+
+/// A scene that was begun for drawings.
+#[derive(Debug)]
+pub(crate) struct Begun {
+    /// Its file.
+    pub(crate) file: PathBuf,
+    /// The folder that goes when the scene is kept elsewhere.
+    pub(crate) temporary: PathBuf,
+    /// Its drawings.
+    pub(crate) copies: Vec<DrawingCopy>,
+}
+
+/// A drawing, and the copy of it that the scene uses.
+#[derive(Debug)]
+pub(crate) struct DrawingCopy {
+    original: PathBuf,
+    copy: PathBuf,
+    taken: Option<Stamp>,
+}
+
+/// What tells a file from an older one of the same name: its length and when it was written.
+type Stamp = (u64, Option<SystemTime>);
+
+fn stamp(file: &Path) -> Option<Stamp> {
+    let data = std::fs::metadata(file).ok()?;
+    Some((data.len(), data.modified().ok()))
+}
+
+impl DrawingCopy {
+    /// A copy that was just made.
+    pub(crate) fn new(original: PathBuf, copy: PathBuf) -> Self {
+        let taken = stamp(&original);
+        Self { original, copy, taken }
+    }
+
+    /// Copies the drawing again if its file has changed. One that is gone is looked at again later.
+    pub(super) fn refresh(&mut self) {
+        let now = stamp(&self.original);
+        if now.is_none() || now == self.taken {
+            return;
+        }
+        let bytes = std::fs::read(&self.original);
+        if bytes.is_ok_and(|bytes| PendingFile::write_whole(&self.copy, &bytes).is_ok()) {
+            self.taken = now;
+        }
+    }
+}
+
+/// The body of `POST api/keep`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keep {
+    folder: String,
+}
+
+/// `POST api/keep`: writes the scene and its drawings into a folder, where it is edited from then on.
+pub(super) fn keep(body: &[u8], session: &Session) -> Result<Value, Refusal> {
+    let asked: Keep = serde_json::from_slice(body).map_err(Refusal::bad)?;
+    let folder = Path::new(asked.folder.trim());
+    if folder.as_os_str().is_empty() {
+        return Err(Refusal::bad("name a folder for the scene"));
+    }
+    let mut document = session.lock_document();
+    if !document.is_temporary() {
+        return Err(refused("the scene has a folder already"));
+    }
+    let scene = Scene::parse(document.base(), document.file());
+    let scene = scene.map_err(|error| Refusal::conflict(Problem::from(&error)))?;
+    let file = folder.join(SCENE_FILE);
+    write_all(&wanted_files(&scene, document.base(), &file)?, folder)?;
+    document.move_to(file);
+    session.forget_temporary();
+    session.read_document(&document);
+    drop(document);
+    Ok(session.state_json())
+}
+
+fn refused(message: impl std::fmt::Display) -> Refusal {
+    Refusal::conflict(Problem::new(message))
+}
+
+/// The files that have to be written so that `file` is the scene: its drawings, and last its text. What is there and has the same bytes
+/// is left out, what is there and has others is refused.
+fn wanted_files(scene: &Scene, text: &str, file: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>, Refusal> {
+    if file.exists() {
+        return Err(refused(format!("{} exists; name another folder", file.display())));
+    }
+    let folder = |file: &Path| file.parent().unwrap_or(Path::new(".")).to_owned();
+    let home = folder(&scene.file).canonicalize().map_err(Refusal::failed)?;
+    let sources = scene.source_files();
+    let mut wanted = Vec::new();
+    for source in sources.map_err(|error| Refusal::conflict(Problem::from(&error)))? {
+        let target = folder(file).join(source.strip_prefix(&home).map_err(Refusal::failed)?);
+        let bytes = std::fs::read(&source);
+        let bytes = bytes.map_err(|error| refused(format!("cannot read the drawing {}: {error}", source.display())))?;
+        match std::fs::read(&target) {
+            Ok(there) if there == bytes => {}
+            Ok(_) => {
+                return Err(refused(format!(
+                    "{} is another drawing of that name; name another folder",
+                    target.display()
+                )));
+            }
+            Err(_) => wanted.push((target, bytes)),
+        }
+    }
+    wanted.push((file.to_owned(), text.as_bytes().to_vec()));
+    Ok(wanted)
+}
+
+/// Writes all files, or none.
+fn write_all(wanted: &[(PathBuf, Vec<u8>)], folder: &Path) -> Result<(), Refusal> {
+    let is_new = !folder.exists();
+    let written = wanted.iter().try_for_each(|(target, bytes)| -> anyhow::Result<()> {
+        std::fs::create_dir_all(target.parent().unwrap_or(folder))?;
+        Ok(PendingFile::write_whole(target, bytes)?)
+    });
+    written.map_err(|error| {
+        // None of them was there before.
+        for (target, _) in wanted {
+            let _ = std::fs::remove_file(target);
+        }
+        if is_new {
+            let _ = std::fs::remove_dir(folder);
+        }
+        refused(format!(
+            "cannot write into {}: {error:#}; name another folder",
+            folder.display()
+        ))
+    })
+}

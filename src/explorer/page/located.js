@@ -1,0 +1,37 @@
+// Points on meshes: in which triangle a place lies, and where the same part of the triangle is in another embedding.
+
+/** How much of each corner a place is made of; not numbers where the triangle is flat. */
+export function partsIn([a, b, c], points, x, y) {
+  const [ax, ay] = [points[2 * a], points[2 * a + 1]];
+  const [ux, uy, vx, vy] = [points[2 * b] - ax, points[2 * b + 1] - ay, points[2 * c] - ax, points[2 * c + 1] - ay];
+  const area = ux * vy - uy * vx;
+  const [p, q] = [((x - ax) * vy - (y - ay) * vx) / area, (ux * (y - ay) - uy * (x - ax)) / area];
+  return [1 - p - q, p, q];
+}
+
+/** The triangle that is seen at a place, which is the last one there, and the parts of its corners: {corners, parts}, or null. */
+export function onMesh(triangles, points, [x, y]) {
+  for (let t = triangles.length - 3; t >= 0; t -= 3) {
+    const corners = triangles.subarray(t, t + 3);
+    const parts = partsIn(corners, points, x, y);
+    if (Math.min(...parts) >= 0) return { corners: Array.from(corners), parts };
+  }
+  return null;
+}
+
+/** Where a point of a mesh is in an embedding. */
+export function placed({ corners, parts }, points) {
+  return [0, 1].map((d) => corners.reduce((sum, v, k) => sum + parts[k] * points[2 * v + d], 0));
+}
+
+/** Whether a place lies inside rings of points x, y, by the even-odd rule. */
+export function isInside(rings, [x, y]) {
+  let inside = false;
+  for (const ring of rings) {
+    for (let k = 0, before = ring.length - 2; k < ring.length; before = k, k += 2) {
+      const [ax, ay, bx, by] = [ring[before], ring[before + 1], ring[k], ring[k + 1]];
+      if (ay <= y !== by <= y && x < ax + ((y - ay) * (bx - ax)) / (by - ay)) inside = !inside;
+    }
+  }
+  return inside;
+}

@@ -1,0 +1,133 @@
+// One sheet with what was taken for the figure on it: the body, loose parts, what was left out. A click on a part leaves it out or takes
+// it back; a click on something else that is drawn asks for it.
+import { getJson } from './api.js';
+import { s, set } from './dom.js';
+import { isLayered, layerOfSheets } from './figures.js';
+import { isInside } from './located.js';
+import { edit, emit, rounded } from './state.js';
+
+const SAID = {
+  body: ['The body of the figure', 'leave it out'],
+  part: ['A loose part', 'leave it out'],
+  kept: ['A part that was asked for', 'forget it'],
+  dropped: ['Left out', 'take it back'],
+};
+
+const ring = (points) => `M${Array.from({ length: points.length / 2 }, (_, k) => `${points[2 * k]} ${points[2 * k + 1]}`).join('L')}Z`;
+const rings = ({ outline, holes }) => [outline, ...holes].map(ring).join('');
+
+/** Whether parts of a figure can be chosen: places of a pose with layers would be on one layer's drawing or the other's. */
+export const canChoose = () => !isLayered();
+
+/** Draws a figure over its sheet; `px`: drawing units of a CSS pixel. */
+export function drawFigure(cell, figure, px) {
+  const { origin: [x, y], scale, width, height } = figure.sheet;
+  const [w, h] = [width / scale, height / scale];
+  const shown = figure.pieces.filter(({ role }) => role !== 'dropped');
+  const veil = s('path', { class: 'veil', d: `M${x} ${y}H${x + w}V${y + h}H${x}Z${shown.map(rings).join('')}`, 'fill-rule': 'evenodd' });
+  cell.layers.veil.replaceChildren(veil);
+  // The body first: what is small lies over it.
+  cell.layers.pieces.replaceChildren(...figure.pieces.map((piece) => pieceMark(cell, figure, piece, px)));
+  const marks = (list) => figure[list].map((at, index) => placeMark(cell, list, at, index, px));
+  cell.layers.places.replaceChildren(...marks('keep'), ...marks('drop'));
+}
+
+function pieceMark(cell, figure, piece, px) {
+  const [what, action] = SAID[piece.role];
+  const isAlone = piece.role === 'body' && figure.pieces.filter(({ role }) => role !== 'dropped').length === 1;
+  const can = canChoose() && !isAlone;
+  const text = can ? `${what}: click to ${action}` : what;
+  const dashes = piece.role === 'dropped' ? `${5 * px} ${4 * px}` : null;
+  const looks = { d: rings(piece), 'stroke-width': 1.75 * px, 'stroke-dasharray': dashes, 'fill-rule': 'evenodd' };
+  const halo = s('path', { ...looks, class: 'halo', 'stroke-width': 4 * px, 'stroke-dasharray': null });
+  const path = [halo, s('path', looks, s('title', {}, text))];
+  const toggle = () => change(cell, figure, piece);
+  return can ? s('g', {
+    class: `piece ${piece.role} choice`, tabindex: 0, role: 'button', 'aria-label': `${text.replace('click', 'press')} (${cell.name})`,
+    onclick: toggle, onkeydown: pressed(toggle),
+  }, path) : s('g', { class: `piece ${piece.role}` }, path);
+}
+
+const pressed = (action) => (event) => {
+  if (event.key !== 'Enter' && event.key !== ' ') return;
+  event.preventDefault();
+  event.stopPropagation();
+  action();
+};
+
+/** A place that the scene names. */
+function placeMark(cell, list, [x, y], index, px) {
+  const label = `${list === 'keep' ? 'A part here is asked for' : 'A part here is left out'}: click to forget it`;
+  const forget = (event) => {
+    event?.stopPropagation();
+    edit([{ op: 'unmark_part', pose: cell.name, list, index }], `forget a part of '${cell.name}'`);
+  };
+  const r = 4 * px;
+  const plus = `M${x - r} ${y}H${x + r}M${x} ${y - r}V${y + r}`;
+  const times = `M${x - r} ${y - r}L${x + r} ${y + r}M${x - r} ${y + r}L${x + r} ${y - r}`;
+  return s('g', {
+    class: `place ${list}`, tabindex: 0, role: 'button', 'aria-label': label.replace('click', 'press'),
+    onclick: forget, onkeydown: pressed(forget),
+  }, s('circle', { cx: x, cy: y, r: 7 * px }), s('path', { d: list === 'keep' ? plus : times, 'stroke-width': 1.75 * px }),
+  s('title', {}, label));
+}
+
+/** Takes a piece out of the figure, or back into it. */
+function change(cell, figure, { role, outline, holes }) {
+  const within = (list) => figure[list].map((at, index) => ({ at, index })).filter(({ at }) => isInside([outline], at));
+  const forget = (list) => within(list).reverse().map(({ index }) => ({ op: 'unmark_part', pose: cell.name, list, index }));
+  if (role === 'dropped') return edit(forget('drop'), `take back a part of '${cell.name}'`);
+  if (role === 'kept') return edit(forget('keep'), `forget a part of '${cell.name}'`);
+  const drop = { op: 'mark_part', pose: cell.name, list: 'drop', at: placeIn([outline, ...holes]) };
+  return edit([...forget('keep'), drop], `leave out a part of '${cell.name}'`);
+}
+
+/** Rows that are tried, of the height of a ring. */
+const ROWS = 16;
+
+/** A place well inside of rings: the middle of the longest run of some rows through them. */
+export function placeIn(all) {
+  const ys = all[0].filter((_, k) => k & 1);
+  const [low, high] = [ys.reduce((a, b) => Math.min(a, b)), ys.reduce((a, b) => Math.max(a, b))];
+  let best = null;
+  for (let row = 1; row < ROWS; row++) {
+    const y = low + ((high - low) * row) / ROWS;
+    const crossings = all.flatMap((points) => crossingsAt(points, y)).sort((a, b) => a - b);
+    for (let k = 0; k + 1 < crossings.length; k += 2) {
+      const length = crossings[k + 1] - crossings[k];
+      if (!best || length > best.length) best = { length, at: [(crossings[k] + crossings[k + 1]) / 2, y] };
+    }
+  }
+  return (best?.at ?? [all[0][0], all[0][1]]).map((value) => rounded(value, 2));
+}
+
+/** Where a ring crosses a height. */
+function crossingsAt(points, y) {
+  const found = [];
+  for (let k = 0, before = points.length - 2; k < points.length; before = k, k += 2) {
+    const [ax, ay, bx, by] = [points[before], points[before + 1], points[k], points[k + 1]];
+    if (ay <= y !== by <= y) found.push(ax + ((y - ay) * (bx - ax)) / (by - ay));
+  }
+  return found;
+}
+
+/** Asks for what is drawn at a place, if there is something. */
+export async function askFor(cell, pose, place) {
+  const at = place.map((value) => rounded(value, 2));
+  try {
+    await getJson('figure', { layer: layerOfSheets(), pose, keep: at });
+    await edit([{ op: 'mark_part', pose: cell.name, list: 'keep', at }], `ask for a part of '${cell.name}'`);
+  } catch (error) {
+    emit('refused', error.problem ?? { message: error.message });
+  }
+}
+
+/** Puts a sheet's picture where it lies. */
+export function drawSheet(cell, figure, pose) {
+  const { origin, scale, width, height } = figure.sheet;
+  const source = `api/sheet?layer=${layerOfSheets()}&pose=${pose}&max=1600&v=${figure.mark}`;
+  const image = cell.layers.picture.firstChild ?? s('image', { preserveAspectRatio: 'none' });
+  if (image.getAttribute('href') !== source) set(image, { href: source });
+  set(image, { x: origin[0], y: origin[1], width: width / scale, height: height / scale });
+  if (!image.parentNode) cell.layers.picture.append(image);
+}
