@@ -6,6 +6,7 @@
 mod art;
 mod art_parts;
 mod bitmap;
+mod border_strip;
 mod canvas;
 mod coverage;
 mod decode;
