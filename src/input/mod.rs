@@ -3,6 +3,7 @@
 //! [`read_bitmap`], [`read_pixels`] and [`read_svg`] are pure; [`open_bitmap`] and [`open_svg`] are the ones that touch the disk. What was left out of a drawing (loose
 //! parts, specks, pin-holes) is told in its [`InputNote`]s; what cannot be used is an [`InputError`].
 
+mod alone;
 mod art;
 mod art_parts;
 mod bitmap;

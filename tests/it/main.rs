@@ -17,6 +17,7 @@ mod long_work;
 mod mapping_report;
 mod parts;
 mod scenes;
+mod separate;
 mod shape;
 mod shape_data;
 mod sheets;
