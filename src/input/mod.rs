@@ -26,6 +26,7 @@ mod obj;
 mod paper;
 mod path;
 mod picture;
+mod sheet;
 mod svg;
 mod svg_art;
 mod svg_numbers;
@@ -45,4 +46,5 @@ pub use path::{
     Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke, Subpath,
 };
 pub use picture::{Picture, read_picture};
+pub use sheet::find_cells;
 pub use svg::{Extent, SvgOptions, open_svg, read_svg, svg_page_px};
