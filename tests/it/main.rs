@@ -6,6 +6,7 @@ mod carried_drawings;
 mod command;
 mod copies;
 mod crisp_silhouette;
+mod decoders;
 mod deformed;
 mod drawn;
 mod explorer;
