@@ -214,6 +214,9 @@ fn trace(
             loose.push((parts.parts[piece], outline, is_kept));
         }
     }
+    // The outlines are all that is needed of them: with large drawings this is memory that the pixels then have.
+    drop(parts);
+    drop(coverage);
     let filled: Vec<&Outline> = match options.holes {
         HoleRule::Keep => Vec::new(),
         HoleRule::Fill => std::iter::once(&outline)
