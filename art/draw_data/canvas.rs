@@ -15,6 +15,9 @@ use tiny_skia::{
 /// Large pixels to one pixel of the finished picture, in each direction.
 const OVERSAMPLING: u32 = 4;
 
+/// How thin the thinnest line of a broad nib is, of its thickest.
+const NIB: f64 = 0.55;
+
 /// What a shadow leaves of the colour under it.
 const SHADOW: Rgb = [0xe4, 0xc0, 0xb6];
 
@@ -89,6 +92,41 @@ impl Canvas {
         if let Some(path) = skia(path) {
             self.large.stroke_path(&path, &paint(colour), &stroke, enlarge(), None);
         }
+    }
+
+    /// Draws along a path with a broad nib, which is held at 45 degrees: lines that run along it are thin, lines across it are `width` wide.
+    pub(crate) fn nib(&mut self, path: &BezPath, width: f64, colour: Rgb) {
+        let held = Affine::rotate(-std::f64::consts::FRAC_PI_4) * Affine::scale_non_uniform(1.0, NIB);
+        let round = held.inverse() * path.clone();
+        let [a, b, c, d, e, f] = held.as_coeffs().map(|value| value as f32);
+        let stroke = Stroke {
+            width: width as f32,
+            line_join: LineJoin::Round,
+            line_cap: tiny_skia::LineCap::Round,
+            ..Stroke::default()
+        };
+        if let Some(path) = skia(&round) {
+            let placed = enlarge().pre_concat(Transform::from_row(a, b, c, d, e, f));
+            self.large.stroke_path(&path, &paint(colour), &stroke, placed, None);
+        }
+    }
+
+    /// How dark the drawing makes white paper there, from 0 to 1.
+    pub(crate) fn darkness(&self, point: Point) -> f64 {
+        let [x, y] = [point.x, point.y].map(|value| value * f64::from(OVERSAMPLING) - 0.5);
+        let [left, top] = [x, y].map(f64::floor);
+        let at = |column: f64, row: f64| {
+            // What is left of the picture or above it becomes a pixel beyond its other side, which there is none of.
+            let [column, row] = [column, row].map(|value| if value < 0.0 { u32::MAX } else { value as u32 });
+            let pixel = (column < self.large.width())
+                .then(|| self.large.pixel(column, row))
+                .flatten();
+            pixel.map_or(0.0, |pixel| f64::from(pixel.alpha() - pixel.green()) / 255.0)
+        };
+        let between = |a: f64, b: f64, part: f64| a + (b - a) * part;
+        let upper = between(at(left, top), at(left + 1.0, top), x - left);
+        let lower = between(at(left, top + 1.0), at(left + 1.0, top + 1.0), x - left);
+        between(upper, lower, y - top)
     }
 
     /// Where the ray from `inside` through `towards` first leaves what has been drawn.

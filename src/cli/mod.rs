@@ -17,6 +17,7 @@ mod output;
 mod progress;
 mod reach;
 mod render;
+mod separate;
 mod shape;
 mod show;
 mod stage_table;
@@ -51,6 +52,7 @@ struct Arguments {
 enum Verb {
     New(new::Arguments),
     Add(add::Arguments),
+    Separate(separate::Arguments),
     Render(render::Arguments),
     Frame(frame::Arguments),
     Map(map::Arguments),
@@ -110,6 +112,7 @@ pub(crate) fn run() -> ExitCode {
     let outcome = match arguments.verb {
         Verb::New(verb) => new::run(&verb, verbosity),
         Verb::Add(verb) => add::run(&verb, verbosity),
+        Verb::Separate(verb) => separate::run(&verb, verbosity),
         Verb::Render(verb) => render::run(&verb, verbosity),
         Verb::Frame(verb) => frame::run(&verb, verbosity),
         Verb::Map(verb) => map::run(&verb, verbosity),

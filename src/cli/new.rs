@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 use inbetween::export::PendingFile;
-use inbetween::input::{BitmapOptions, InputError, Picture, PictureChoice, frame_count, read_bitmap};
+use inbetween::input::{BitmapOptions, InputError, Picture, PictureChoice, find_cells, frame_count, read_bitmap};
 use inbetween::pipeline::Build;
 use inbetween::scene::{NewPose, Scene, scene_text};
 use inbetween::weights::arrange;
@@ -19,7 +19,7 @@ const SUFFIXES: [&str; 10] = ["png", "apng", "jpg", "jpeg", "webp", "gif", "bmp"
 ///
 /// Writes DIR/scene.toml with one pose a drawing, named after its file. The drawings are mapped onto one another to lay the poses
 /// out: those that are alike come near one another. They are taken in the order of the numbers in their names; an animated GIF, APNG or
-/// WebP gives a pose a frame, a sheet one a cell (--cells). If they cannot be mapped, the poses lie evenly on a circle and
+/// WebP gives a pose a frame, a sheet one a cell (--cells; where one drawing is given with a figure in each of four or more equal cells, they are found). If they cannot be mapped, the poses lie evenly on a circle and
 /// a note says why. What was taken for the figure is said for every drawing; one that cannot be used is refused. Drawings that are not in
 /// DIR are copied into it, so that the folder is complete. An existing scene file is only overwritten with --force.
 #[derive(clap::Args)]
@@ -156,7 +156,12 @@ pub(super) fn plan(arguments: &Arguments) -> anyhow::Result<Plan> {
             .file_stem()
             .map(|s| s.to_string_lossy().into_owned())
             .unwrap_or_default();
-        let pictures = pictures_of(path, arguments.cells, &mut notes)?;
+        let cells = match arguments.cells {
+            Some(grid) => Some(grid),
+            None if arguments.poses.len() == 1 => sheet_of(path, &mut notes)?,
+            None => None,
+        };
+        let pictures = pictures_of(path, cells, &mut notes)?;
         for (number, &picture) in pictures.iter().enumerate() {
             let own = match pictures.len() {
                 1 => stem.clone(),
@@ -178,6 +183,24 @@ pub(super) fn plan(arguments: &Arguments) -> anyhow::Result<Plan> {
         }
     }
     Ok(Plan { poses, copies, notes })
+}
+
+/// The cells of the only drawing that is given, if it shows a figure in each: one drawing of one figure needs no scene. Animated files have their frames.
+fn sheet_of(path: &Path, notes: &mut Vec<String>) -> anyhow::Result<Option<Grid>> {
+    let bytes = std::fs::read(path).with_context(|| format!("cannot read the drawing {}", path.display()))?;
+    // A file that cannot be read is refused with its cause when it is read.
+    if frame_count(&bytes).unwrap_or(0) != 1 {
+        return Ok(None);
+    }
+    let Ok(Some([columns, rows])) = find_cells(&bytes) else {
+        return Ok(None);
+    };
+    notes.push(format!(
+        "{} is taken for a sheet of {columns} x {rows} figures, a pose each; if it has other cells, say so with --cells, and with --cells 1x1 \
+         if it is one figure",
+        path.display()
+    ));
+    Ok(Some(Grid([columns, rows])))
 }
 
 /// What of a drawing's file are poses: the frames of an animated one, the cells of a sheet, row by row; those in which nothing is drawn,

@@ -16,6 +16,7 @@ use std::path::Path;
 use image::RgbaImage;
 use rayon::prelude::*;
 
+use super::border_strip::border_strips;
 use super::coverage::Coverage;
 use super::decode::{Decoded, PictureChoice, count_frames, decode_chosen, image_of_pixels, upright_size};
 use super::figure::{FigureKind, FigureRule, PaperRule};
@@ -177,7 +178,12 @@ fn trace(
     let pieces: Vec<Piece> = parts.parts.iter().map(Part::piece).collect();
     // Of a sprite every pixel counts.
     let loose_dirt = |largest: f64| DIRT_AREA.min(SPRITE_SHARE * largest).max(DIRT_SHARE * largest);
-    let chosen = choose(&pieces, &options.parts, loose_dirt, |place| parts.at(place))?;
+    let strips = match found.kept {
+        Some(_) => border_strips(&parts),
+        // Whoever cut the figure out meant what is left.
+        None => Vec::new(),
+    };
+    let chosen = choose(&pieces, &strips, &options.parts, loose_dirt, |place| parts.at(place))?;
     let Some(chosen) = chosen else {
         return Err(InputError::NothingDrawn {
             width: image.width() as usize,
@@ -196,6 +202,9 @@ fn trace(
     }
     let dirt = DIRT_AREA.max(DIRT_SHARE * largest.area);
     let mut notes = taken.to_vec();
+    if strips.iter().any(|strip| chosen.dropped.contains(strip)) {
+        notes.push(InputNote::BorderStripLeftOut);
+    }
     note_pieces(&pieces, &chosen, loose_dirt(largest.area), &mut notes);
     let outline = outline_of(&parts, largest, dirt, options.holes, &mut notes)?.ok_or(too_small)?;
     let mut loose: Vec<(Part, Outline, bool)> = Vec::new();
@@ -205,6 +214,9 @@ fn trace(
             loose.push((parts.parts[piece], outline, is_kept));
         }
     }
+    // The outlines are all that is needed of them: with large drawings this is memory that the pixels then have.
+    drop(parts);
+    drop(coverage);
     let filled: Vec<&Outline> = match options.holes {
         HoleRule::Keep => Vec::new(),
         HoleRule::Fill => std::iter::once(&outline)
@@ -337,7 +349,7 @@ fn without_background(image: &RgbaImage, found: &Found, filled: &[&Outline]) -> 
 }
 
 /// Whether each pixel's centre lies inside one of the outlines, which lie apart.
-fn rows_inside(outlines: &[&Outline], width: usize, height: usize) -> Vec<bool> {
+pub(super) fn rows_inside(outlines: &[&Outline], width: usize, height: usize) -> Vec<bool> {
     let mut crossings = vec![Vec::new(); height];
     for ring in outlines.iter().flat_map(|outline| outline.rings()) {
         for (a, b) in ring.edges() {

@@ -51,6 +51,8 @@ pub enum InputNote {
     PageTaken,
     /// The figure touches all four borders.
     FillsCanvas,
+    /// Something narrow along a whole border of the picture: the sheet's shadow, or what it lies on.
+    BorderStripLeftOut,
     /// What covers the page behind an SVG drawing.
     BackgroundLeftOut,
     /// A shadow or glow outside of the outline.
@@ -145,6 +147,10 @@ impl std::fmt::Display for InputNote {
             Self::FillsCanvas => f.write_str(
                 "the figure touches all four borders of the picture; if that is its background, cut the figure out or leave a margin of \
                  plain background around it",
+            ),
+            Self::BorderStripLeftOut => f.write_str(
+                "a strip along a whole border of the picture, such as the shadow at the edge of a sheet, is left out; if it belongs to the \
+                 drawing, a point on it under `keep` of the pose says so",
             ),
             Self::BackgroundLeftOut => f.write_str("a background that covers the page is left out"),
             Self::SoftEdgeCut => f.write_str(

@@ -120,6 +120,17 @@ impl<'a> Parts<'a> {
             .map(|(pixel, _)| self.labels[pixel] as usize - 1)
     }
 
+    /// How many columns and rows the picture has.
+    pub(super) fn size(&self) -> [usize; 2] {
+        [self.coverage.width - 2, self.coverage.height - 2]
+    }
+
+    /// The part that covers a pixel of the picture, if any does.
+    pub(super) fn covering(&self, column: usize, row: usize) -> Option<usize> {
+        let label = self.labels[(row + 1) * self.coverage.width + column + 1];
+        (label as usize).checked_sub(1)
+    }
+
     /// The closed loops around a part: one of positive area, and one of negative area for each hole.
     pub(super) fn loops(&self, part: Part) -> Vec<Vec<Point>> {
         let label = part.label;

@@ -68,10 +68,11 @@ pub(super) struct Chosen {
     pub(super) dropped: Vec<usize>,
 }
 
-/// Chooses among the pieces of a drawing. `dirt` is the area below which a piece of a drawing whose largest has the given area is dirt;
-/// `at` says which piece a place means. `None` where there is no piece.
+/// Chooses among the pieces of a drawing, of which `strips` belong to the sheet unless they are asked for. `dirt` is the area below which
+/// a piece of a drawing whose largest has the given area is dirt; `at` says which piece a place means. `None` where there is no piece.
 pub(super) fn choose(
     pieces: &[Piece],
+    strips: &[usize],
     options: &PartOptions,
     dirt: impl Fn(f64) -> f64,
     at: impl Fn(Point) -> Option<usize>,
@@ -80,7 +81,8 @@ pub(super) fn choose(
         let piece = |place: &Point| at(*place).ok_or(InputError::NoPartThere { x: place.x, y: place.y });
         places.iter().map(piece).collect()
     };
-    let (kept, dropped) = (found(&options.keep)?, found(&options.drop)?);
+    let (kept, mut dropped) = (found(&options.keep)?, found(&options.drop)?);
+    dropped.extend(strips.iter().filter(|strip| !kept.contains(strip)));
     let is_left = |piece: &usize| !dropped.contains(piece);
     let by_area = |a: &usize, b: &usize| pieces[*a].area.total_cmp(&pieces[*b].area).then(b.cmp(a));
     let Some(largest) = (0..pieces.len()).filter(is_left).max_by(by_area) else {
@@ -138,7 +140,7 @@ mod tests {
 
     fn chosen(areas: &[f64], options: &PartOptions) -> Result<Option<Chosen>, InputError> {
         let at = |place: Point| (place.y == 0.0).then_some((place.x / 10.0) as usize);
-        choose(&pieces(areas), options, |area| 0.01 * area, at)
+        choose(&pieces(areas), &[], options, |area| 0.01 * area, at)
     }
 
     #[test]

@@ -3,9 +3,11 @@
 //! [`read_bitmap`], [`read_pixels`] and [`read_svg`] are pure; [`open_bitmap`] and [`open_svg`] are the ones that touch the disk. What was left out of a drawing (loose
 //! parts, specks, pin-holes) is told in its [`InputNote`]s; what cannot be used is an [`InputError`].
 
+mod alone;
 mod art;
 mod art_parts;
 mod bitmap;
+mod border_strip;
 mod canvas;
 mod coverage;
 mod decode;
@@ -24,6 +26,7 @@ mod obj;
 mod paper;
 mod path;
 mod picture;
+mod sheet;
 mod svg;
 mod svg_art;
 mod svg_numbers;
@@ -43,4 +46,5 @@ pub use path::{
     Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke, Subpath,
 };
 pub use picture::{Picture, read_chosen_picture, read_picture};
+pub use sheet::find_cells;
 pub use svg::{Extent, SvgOptions, open_svg, read_svg, read_svg_page, svg_page_px};

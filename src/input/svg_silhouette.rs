@@ -149,7 +149,8 @@ fn pieces(parts: &[Region], hole_rule: HoleRule, options: &PartOptions) -> Resul
         })
         .collect();
     let at = |place| named_piece(parts, place);
-    let chosen = choose(&measured, options, |largest| DIRT_SHARE * largest, at)?.ok_or(InputError::NoClosedShape)?;
+    let chosen =
+        choose(&measured, &[], options, |largest| DIRT_SHARE * largest, at)?.ok_or(InputError::NoClosedShape)?;
     let dirt = DIRT_SHARE * measured[chosen.largest].area;
     let mut notes = Vec::new();
     note_pieces(&measured, &chosen, dirt, &mut notes);

@@ -23,6 +23,8 @@ const SMALL: f64 = 2e-3;
 const MOST_SMALL: usize = 12;
 /// What a pair of small parts may cost: dust finds a counterpart by chance.
 const SMALL_PAIR: f64 = 0.5;
+/// What the place of one may cost, however much sizes differ: a spark grows, and dust seldom lies where other dust lay.
+const SMALL_PLACE: f64 = 0.2;
 
 /// Which parts of the poses are one thing.
 #[derive(Debug, Clone, PartialEq)]
@@ -170,17 +172,16 @@ fn cost(a: &Relative, b: &Relative) -> f64 {
         .map(|(a, b)| (a - b).abs())
         .sum::<f64>()
         / 4.0;
-    let plain = PLACE * (a.place - b.place).norm()
-        + SIZE * (a.size - b.size).abs()
-        + COLOUR * colour
-        + ELONGATION * (a.elongation - b.elongation).abs();
+    let place = PLACE * (a.place - b.place).norm();
+    let plain =
+        place + SIZE * (a.size - b.size).abs() + COLOUR * colour + ELONGATION * (a.elongation - b.elongation).abs();
     let shared = a
         .landmarks
         .iter()
         .filter(|landmark| b.landmarks.contains(landmark))
         .count();
     let landmarks = -LANDMARK * shared as f64;
-    if a.is_small && b.is_small && plain > SMALL_PAIR && shared == 0 {
+    if a.is_small && b.is_small && plain > SMALL_PAIR && place > SMALL_PLACE && shared == 0 {
         return 2.0 * ALONE + 1.0;
     }
     plain + landmarks
@@ -285,6 +286,12 @@ mod tests {
         let crowd = || std::iter::once(body()).chain((0..100).map(speck)).collect::<Vec<_>>();
         let many = grouped(&[crowd(), crowd()]);
         assert_eq!((many.things.len(), many.dust[0].len()), (1, 100));
+        // Specks of one drawing lie elsewhere than those of another, but a spark may grow where it is.
+        let grown = grouped(&[
+            vec![body(), part(30.0, 20.0, 21.0, INK)],
+            vec![body(), part(40.0, 10.0, 60.0, INK)],
+        ]);
+        assert_eq!(grown.things.len(), 2);
         // A spark as small as a speck that both drawings have is a thing, and so is one that is kept.
         let spark = grouped(&[vec![body(), speck(20)], vec![body(), speck(20)]]);
         assert_eq!(spark.things.len(), 2);

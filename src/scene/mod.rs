@@ -14,6 +14,7 @@ mod file;
 mod layers;
 mod new;
 mod newcomer;
+mod separated;
 mod settings;
 mod shape;
 mod shape_model;
@@ -26,6 +27,7 @@ pub use error::{SceneError, SceneProblem};
 pub use layers::{LayerAnchor, SceneLayer};
 pub use new::{NewPose, scene_text};
 pub use newcomer::Newcomer;
+pub use separated::{Separated, SeparatedDrawing, SeparatedLayer};
 pub use settings::{
     DeformedSource, DrawnSource, FrameSize, Holes, InputSettings, Layout, PoseSource, PoseSpaceSettings, Provider,
     ReadingSettings, Scene, SceneLandmark, ScenePath, ScenePose,

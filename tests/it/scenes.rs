@@ -53,6 +53,22 @@ fn the_bear() {
 }
 
 #[test]
+fn the_wizard() {
+    shown("wizard");
+}
+
+#[test]
+fn the_wizards_loose_parts_are_a_hat_three_sparks_and_a_drop() {
+    let scene = Scene::open(&scene_file("wizard")).expect("a scene");
+    let character = scene.character([192, 216], 1).expect("a character");
+    assert_eq!(character.layers().len(), 6);
+    let told = character.notes().join("\n");
+    // The drop alone is in one drawing only, and the shadow at the sheet's edge is no part.
+    assert_eq!(told.matches("(not in 2 poses)").count(), 1, "{told}");
+    assert_eq!(told.matches("along a whole border").count(), 3, "{told}");
+}
+
+#[test]
 fn no_scene_is_forgotten() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
     let folders = std::fs::read_dir(data).expect("a folder");
@@ -61,5 +77,5 @@ fn no_scene_is_forgotten() {
         .filter(|name| scene_file(name).is_file())
         .collect();
     names.sort();
-    assert_eq!(names, ["bear", "clown", "face", "snake", "walker"]);
+    assert_eq!(names, ["bear", "clown", "face", "snake", "walker", "wizard"]);
 }

@@ -132,3 +132,51 @@ fn one_more_drawing_is_one_more_pose_with_its_landmarks_and_place() {
     assert_eq!(std::fs::read(workshop.path("scene.toml")).expect("bytes"), before);
     assert_eq!(workshop.listing(), listing);
 }
+
+/// A picture with boxes: left, top, width, height.
+fn boxes(workshop: &Workshop, name: &str, size: [u32; 2], boxes: &[[u32; 4]]) {
+    let picture = image::RgbaImage::from_fn(size[0], size[1], |x, y| {
+        let is_inside = |[left, top, width, height]: &[u32; 4]| {
+            (*left..left + width).contains(&x) && (*top..top + height).contains(&y)
+        };
+        image::Rgba(if boxes.iter().any(is_inside) {
+            [200, 40, 30, 255]
+        } else {
+            [0; 4]
+        })
+    });
+    picture.save(workshop.path(name)).expect("written");
+}
+
+#[test]
+fn a_sheet_is_found_where_each_cell_has_a_figure() {
+    let workshop = Workshop::new();
+    let figures: Vec<[u32; 4]> = (0..6)
+        .map(|k| [30 * (k % 3) + 8, 40 * (k / 3) + 6 + k, 12 + k, 26 - k])
+        .collect();
+    boxes(&workshop, "walk.png", [90, 80], &figures);
+    let output = workshop.run(&["new", "w", "walk.png"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("sheet of 3 x 2 figures"), "{said}");
+    assert_eq!(names(&workshop, "w/scene.toml").len(), 6, "{said}");
+    // Whoever knows better says so.
+    workshop.succeeds(&["new", "one", "walk.png", "--cells", "1x1"]);
+    assert_eq!(names(&workshop, "one/scene.toml").len(), 1);
+}
+
+#[test]
+fn one_figure_with_loose_parts_is_no_sheet() {
+    let workshop = Workshop::new();
+    let parts = [
+        [25, 30, 34, 46],
+        [30, 8, 24, 14],
+        [66, 12, 6, 6],
+        [74, 20, 5, 5],
+        [10, 10, 6, 6],
+    ];
+    boxes(&workshop, "one.png", [90, 80], &parts);
+    let output = workshop.run(&["new", "w", "one.png"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!said.contains("sheet"), "{said}");
+    assert_eq!(names(&workshop, "w/scene.toml"), ["one"]);
+}

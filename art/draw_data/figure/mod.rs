@@ -9,6 +9,8 @@ mod skeleton;
 use std::error::Error;
 use std::path::Path;
 
+use kurbo::Point;
+
 use crate::canvas::Canvas;
 use crate::scene::Pose;
 
@@ -36,17 +38,27 @@ pub(crate) fn draw_poses<F: Figure>(folder: &Path, drawings: &[F]) -> Result<Vec
     std::fs::create_dir_all(folder)?;
     let draw = |figure: &F| {
         let attitude = figure.attitude();
-        let skeleton = Skeleton::new(&F::BUILD, attitude);
-        let mut canvas = Canvas::new(WIDTH_PX, HEIGHT_PX)?;
-        figure.paint(&mut canvas, &skeleton);
+        let (canvas, landmarks) = drawn(figure)?;
         let file = format!("{}.png", attitude.name);
         canvas.save(&folder.join(&file))?;
         Ok(Pose {
             name: attitude.name,
             file,
             at: attitude.at,
-            landmarks: landmarks::landmarks(figure, &canvas, &skeleton)?,
+            landmarks,
         })
     };
     drawings.iter().map(draw).collect()
+}
+
+/// Points of a drawing that are known, by name.
+pub(crate) type KnownPoints = Vec<(String, Point)>;
+
+/// A figure drawn, and where its landmarks are.
+pub(crate) fn drawn<F: Figure>(figure: &F) -> Result<(Canvas, KnownPoints), Box<dyn Error>> {
+    let skeleton = Skeleton::new(&F::BUILD, figure.attitude());
+    let mut canvas = Canvas::new(WIDTH_PX, HEIGHT_PX)?;
+    figure.paint(&mut canvas, &skeleton);
+    let landmarks = landmarks::landmarks(figure, &canvas, &skeleton)?;
+    Ok((canvas, landmarks))
 }

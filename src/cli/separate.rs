@@ -1,0 +1,335 @@
+//! `inbetween separate`.
+
+use std::collections::BTreeSet;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+use inbetween::export::{PendingFile, png_bytes, svg_text};
+use inbetween::input::{Art, Canvas, Picture};
+use inbetween::render::{Frame, VectorFrame, VectorNode, VectorShape};
+use inbetween::scene::{Scene, Separated, SeparatedDrawing};
+use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, TableLike, Value};
+
+use super::{Failure, Verbosity};
+
+/// What of a pose says how its drawing is read; of the pictures that are written nothing is left to be said.
+const OF_READING: [&str; 10] = [
+    "element",
+    "figure",
+    "gap",
+    "paper",
+    "threshold",
+    "keep",
+    "drop",
+    "frame",
+    "cell",
+    "source",
+];
+
+/// Write the parts that were found as layers
+///
+/// Loose parts of the drawings (a hat that floats, a spark, an eyebrow) become the layers of a new scene in DIR: a picture a part and
+/// pose, PNG of bitmaps and SVG of vector drawings, on the canvas of the drawing that it was found in, and a scene.toml with everything
+/// that the old one says. A frame at a pose stays as it is. Between poses a part that only some of them have appears where it is, instead
+/// of growing.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  inbetween separate wizard/scene.toml -o wizard-layers")]
+pub(crate) struct Arguments {
+    /// The scene file
+    scene: PathBuf,
+    /// The folder of the new scene; made if it does not exist
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Write over the files of an earlier run
+    #[arg(long)]
+    force: bool,
+}
+
+/// A file of the new scene.
+struct Written {
+    name: String,
+    bytes: Vec<u8>,
+}
+
+pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
+    let file = &arguments.scene;
+    let scene = Scene::open(file)?;
+    if let [first, others @ ..] = scene.layers.as_slice() {
+        let names: Vec<String> = std::iter::once(first)
+            .chain(others)
+            .map(|layer| format!("'{}'", layer.name))
+            .collect();
+        return Err(anyhow::anyhow!(
+            "{}: the scene has layers already ({}), and loose parts of theirs stay with them; there is nothing to separate",
+            file.display(),
+            names.join(", ")
+        )
+        .into());
+    }
+    let scene = scene.with_automatic_places()?;
+    let separated = scene.separated()?;
+    for note in &separated.notes {
+        verbosity.note(&format!("note: {note}"));
+    }
+    if separated.layers.len() < 2 {
+        return Err(anyhow::anyhow!(
+            "{}: the drawings have no loose parts; there is nothing to separate",
+            file.display()
+        )
+        .into());
+    }
+    let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+    let files = files(&scene, &separated, &text, &arguments.output)?;
+    write(&files, arguments)?;
+    verbosity.note(&format!(
+        "wrote {} with {} layers and {} pictures; next: inbetween render {0} -o {}.gif",
+        arguments.output.join("scene.toml").display(),
+        separated.layers.len(),
+        files.len() - 1,
+        arguments
+            .output
+            .file_name()
+            .map_or_else(|| "layers".into(), |name| name.to_string_lossy()),
+    ));
+    Ok(())
+}
+
+/// All files, the scene last.
+fn files(scene: &Scene, separated: &Separated, text: &str, folder: &Path) -> anyhow::Result<Vec<Written>> {
+    let mut written: Vec<Written> = Vec::new();
+    let mut sources: Vec<InlineTable> = vec![InlineTable::new(); scene.poses.len()];
+    for layer in &separated.layers {
+        for ((pose, drawing), source) in scene.poses.iter().zip(&layer.drawings).zip(&mut sources) {
+            let Some(drawing) = drawing else { continue };
+            let (bytes, suffix) = match drawing {
+                SeparatedDrawing::Pixels(picture) => (png_bytes(&frame(picture))?, "png"),
+                SeparatedDrawing::Curves(art, canvas) => (page(art, canvas)?.into_bytes(), "svg"),
+                SeparatedDrawing::Unwritable => bail!(
+                    "the drawing of pose '{}' has something that curves cannot say, so its part '{}' cannot be written; export it as a \
+                     PNG with a transparent background, and separate that",
+                    pose.name,
+                    layer.name
+                ),
+            };
+            let name = file_name(&pose.name, &layer.name, suffix, &written);
+            source.insert(&layer.name, name.as_str().into());
+            written.push(Written { name, bytes });
+        }
+    }
+    let mut document: DocumentMut = text
+        .parse()
+        .with_context(|| format!("cannot edit {}", scene.file.display()))?;
+    edit(&mut document, scene, separated, sources)?;
+    let text = document.to_string();
+    Scene::parse(&text, &folder.join("scene.toml"))
+        .context("the scene cannot be put into layers; take out what its cause names, and put it back afterwards")?;
+    written.push(Written {
+        name: "scene.toml".to_owned(),
+        bytes: text.into_bytes(),
+    });
+    Ok(written)
+}
+
+/// A name that no other file has, of letters that every system takes.
+fn file_name(pose: &str, layer: &str, suffix: &str, written: &[Written]) -> String {
+    let plain = |word: &str| -> String {
+        let letters = word.chars();
+        letters
+            .map(|c| if c.is_alphanumeric() || c == '_' { c } else { '-' })
+            .collect()
+    };
+    let stem = format!("{}-{}", plain(pose), plain(layer));
+    // Some systems do not tell capitals apart.
+    let is_free = |name: &String| {
+        !written
+            .iter()
+            .any(|file| file.name.to_lowercase() == name.to_lowercase())
+    };
+    let numbered = (2..).map(|number| format!("{stem}-{number}.{suffix}"));
+    let mut names = std::iter::once(format!("{stem}.{suffix}")).chain(numbered);
+    names.find(is_free).unwrap_or_default()
+}
+
+fn frame(picture: &Picture) -> Frame {
+    Frame {
+        width: picture.width,
+        height: picture.height,
+        pixels: picture.pixels.clone(),
+    }
+}
+
+/// The curves of a part as an SVG document on the page of the drawing that it was found in.
+fn page(art: &Art, canvas: &Canvas) -> anyhow::Result<String> {
+    let nodes = art.elements.iter().enumerate().map(|(number, element)| {
+        VectorNode::Shape(Box::new(VectorShape {
+            id: element.id.clone().unwrap_or_else(|| format!("path-{}", number + 1)),
+            subpaths: element.subpaths.clone(),
+            fill: element.fill.clone(),
+            stroke: element.stroke.clone(),
+            opacity: element.opacity,
+        }))
+    });
+    let text = svg_text(&VectorFrame {
+        size: [1, 1],
+        background: None,
+        nodes: nodes.collect(),
+    })?;
+    let (low, size) = (canvas.low, canvas.size());
+    let own = format!(
+        "viewBox=\"{} {} {} {}\" width=\"{2}\" height=\"{3}\"",
+        low.x, low.y, size.x, size.y
+    );
+    Ok(text.replacen("viewBox=\"0 0 1 1\" width=\"1\" height=\"1\"", &own, 1))
+}
+
+/// Puts the scene into layers.
+fn edit(
+    document: &mut DocumentMut,
+    scene: &Scene,
+    separated: &Separated,
+    sources: Vec<InlineTable>,
+) -> anyhow::Result<()> {
+    let mut layers = ArrayOfTables::new();
+    for layer in &separated.layers {
+        let mut table = Table::new();
+        table.insert("name", layer.name.as_str().into());
+        layers.push(table);
+    }
+    document.insert("layer", Item::ArrayOfTables(layers));
+    edit_input(document)?;
+    let poses = tables(document, "pose");
+    if poses.len() != sources.len() {
+        bail!("the scene has no list of [[pose]] tables");
+    }
+    for (index, (pose, source)) in poses.into_iter().zip(sources).enumerate() {
+        for key in OF_READING {
+            pose.remove(key);
+        }
+        if !pose.contains_key("deform_of") {
+            pose.insert("source", Item::Value(Value::InlineTable(source)));
+        }
+        let place: Array = scene.poses[index].at.iter().copied().collect();
+        pose.insert("at", Item::Value(Value::Array(place)));
+        let order = &separated.draw_orders[index];
+        if !order.is_sorted() {
+            let names = order.iter().map(|&layer| &separated.layers[layer]);
+            let own = names.filter(|layer| layer.drawings[index].is_some());
+            let names: Array = own.map(|layer| layer.name.as_str()).collect();
+            pose.insert("order", Item::Value(Value::Array(names)));
+        }
+        if let Some(handles) = pose.get_mut("handles") {
+            name_handles(handles, index, separated);
+        }
+    }
+    for landmark in tables(document, "landmark") {
+        let name = landmark.get("name").and_then(Item::as_str).unwrap_or_default();
+        let Some(layer) = separated
+            .layers
+            .iter()
+            .find(|layer| layer.landmarks.iter().any(|own| own == name))
+        else {
+            continue;
+        };
+        landmark.insert("layer", layer.name.as_str().into());
+        let Some(places) = landmark.get_mut("at").and_then(Item::as_table_like_mut) else {
+            continue;
+        };
+        for (pose, drawing) in scene.poses.iter().zip(&layer.drawings) {
+            if drawing.is_none() {
+                places.remove(&pose.name);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The pictures that are written are cut out, and of one piece.
+fn edit_input(document: &mut DocumentMut) -> anyhow::Result<()> {
+    let input = document.entry("input").or_insert(Item::Table(Table::new()));
+    let input = input.as_table_like_mut().context("`input` is no table")?;
+    for key in ["gap", "paper", "cells"] {
+        input.remove(key);
+    }
+    input.insert("figure", "alpha".into());
+    input.insert("parts", "largest".into());
+    Ok(())
+}
+
+/// Says for each handle of a copy which layer it takes hold of.
+fn name_handles(handles: &mut Item, pose: usize, separated: &Separated) {
+    // Each layer has its handles in the order of the file.
+    let mut left: Vec<_> = separated
+        .layers
+        .iter()
+        .map(|layer| layer.handles[pose].iter().peekable())
+        .collect();
+    let written: Vec<&mut dyn TableLike> = match handles {
+        Item::Value(Value::Array(values)) => values
+            .iter_mut()
+            .filter_map(Value::as_inline_table_mut)
+            .map(|table| table as &mut dyn TableLike)
+            .collect(),
+        Item::ArrayOfTables(tables) => tables.iter_mut().map(|table| table as &mut dyn TableLike).collect(),
+        _ => Vec::new(),
+    };
+    for handle in written {
+        let from = handle.get("from").and_then(Item::as_array).map(|from| {
+            let numbers = from
+                .iter()
+                .filter_map(|v| v.as_float().or(v.as_integer().map(|v| v as f64)));
+            numbers.collect::<Vec<f64>>()
+        });
+        let is_next = |own: &mut std::iter::Peekable<std::slice::Iter<'_, inbetween::pipeline::HandleMove>>| {
+            own.peek()
+                .is_some_and(|next| from.as_deref() == Some(&[next.from.x, next.from.y]))
+        };
+        let found = left.iter_mut().position(is_next);
+        if let Some(layer) = found {
+            left[layer].next();
+            handle.insert("layer", separated.layers[layer].name.as_str().into());
+        }
+    }
+}
+
+/// The tables of a list, however it is written.
+fn tables<'a>(document: &'a mut DocumentMut, key: &str) -> Vec<&'a mut dyn TableLike> {
+    match document.get_mut(key) {
+        Some(Item::ArrayOfTables(tables)) => tables.iter_mut().map(|table| table as &mut dyn TableLike).collect(),
+        Some(Item::Value(Value::Array(values))) => values
+            .iter_mut()
+            .filter_map(Value::as_inline_table_mut)
+            .map(|table| table as &mut dyn TableLike)
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Writes all files or none.
+fn write(files: &[Written], arguments: &Arguments) -> anyhow::Result<()> {
+    let folder = &arguments.output;
+    let targets: BTreeSet<PathBuf> = files.iter().map(|file| folder.join(&file.name)).collect();
+    if let Some(target) = targets.iter().find(|target| target.exists() && !arguments.force) {
+        bail!(
+            "{} exists; write over it with --force, or choose another folder",
+            target.display()
+        );
+    }
+    let is_new = !folder.exists();
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    let written = || -> anyhow::Result<()> {
+        let mut pending = Vec::new();
+        for file in files {
+            let mut own = PendingFile::create(&folder.join(&file.name))?;
+            own.write_all(&file.bytes)
+                .with_context(|| format!("cannot write {}", own.target().display()))?;
+            pending.push(own);
+        }
+        Ok(PendingFile::commit_all(pending)?)
+    };
+    let done = written();
+    if done.is_err() && is_new {
+        let _ = std::fs::remove_dir(folder);
+    }
+    done
+}
