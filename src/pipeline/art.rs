@@ -24,6 +24,14 @@ pub(super) struct LayerArt {
     drawing_of: Vec<usize>,
 }
 
+/// How the frames of a character see it.
+#[derive(Clone, Copy)]
+pub(super) struct View {
+    pub(super) camera: Camera,
+    /// Along a pixel's side.
+    pub(super) samples: usize,
+}
+
 #[derive(Debug)]
 enum Style {
     Pixels(Box<Painter>),
@@ -38,10 +46,10 @@ impl LayerArt {
         texture: &TextureSpec,
         drawings: &[Arc<Drawing>],
         mesh: impl FnOnce() -> Option<Arc<TextureMesh>>,
-        camera: Camera,
-        samples: usize,
+        view: View,
         notes: &mut Vec<String>,
     ) -> Result<Self, PipelineError> {
+        let View { camera, samples } = view;
         let drawn_on = part.layer.drawn_poses();
         let drawing_of = part.layer.shown_drawings();
         let (mapping, silhouette) = (shape.mapping(), shape.silhouette.clone());

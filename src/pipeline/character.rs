@@ -4,7 +4,7 @@ mod runtime;
 
 use std::sync::Arc;
 
-use super::art::LayerArt;
+use super::art::{LayerArt, View};
 use super::figure::{Figure, Posed};
 use super::layer::{self, LayerShape};
 use super::{Build, PipelineError, weighting};
@@ -80,8 +80,7 @@ impl Character {
                 &spec.texture,
                 drawings,
                 || build.texture_mesh(k),
-                camera,
-                samples,
+                View { camera, samples },
                 &mut notes,
             )?);
         }
