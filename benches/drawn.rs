@@ -5,6 +5,7 @@
 //!
 //! - `appearance`: one drawing resampled, its colours, ink and coverage.
 //! - `register`: one pose found from a beginning that leaves its arms where they were; `register again` after a pin has moved on one pose of three.
+//! - `textures`: the pictures of four poses registered to one another on their mesh, divided as it is for painting.
 //! - `map`: four and sixteen drawings to a mesh, and four silhouettes of the same outlines, which are not looked at inside.
 
 use std::sync::Arc;
@@ -14,8 +15,9 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use inbetween::appearance::Appearance;
 use inbetween::input::{Drawing, SvgOptions, read_svg};
 use inbetween::math::Point;
+use inbetween::mesh::subdivided;
 use inbetween::pipeline::{LayerSpec, PoseSpec, map_layer};
-use inbetween::registration::{Pin, RingPairs, register};
+use inbetween::registration::{Embedded, Pin, RingPairs, register, register_textures};
 
 #[path = "common/brief.rs"]
 mod brief;
@@ -72,6 +74,20 @@ fn drawn(criterion: &mut Criterion) {
     group.bench_function("register again", |b| {
         b.iter(|| register(&appearances, 0, &beginnings(4), &pins, Some(&before)).expect("a registration"));
     });
+    let (mapping, _) = map_layer(&layer(4, true)).expect("a mapping");
+    let shown: Vec<Arc<Appearance>> = (0..4)
+        .map(|k| Arc::new(Appearance::new(&figure(10.0 * f64::from(k), true))))
+        .collect();
+    let triangles = mapping.poses.topology().triangles();
+    let (fine, places) = subdivided(triangles, mapping.poses.topology().vertex_count(), 3);
+    let positions: Vec<&[Point]> = mapping.poses.positions().iter().map(Vec::as_slice).collect();
+    let embedded = Embedded {
+        triangles,
+        fine: (&fine, &places),
+        appearances: &shown,
+        positions: &positions,
+    };
+    group.bench_function("textures", |b| b.iter(|| register_textures(&embedded, 0, &[true; 4])));
     for (poses, is_drawn) in [(4, true), (16, true), (4, false)] {
         let layer = layer(poses, is_drawn);
         let what = if is_drawn { "drawings" } else { "silhouettes" };

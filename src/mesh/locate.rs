@@ -94,25 +94,8 @@ impl PointLocator {
     /// As [`Self::bind`] for each of `places`; quick where one is near to the one before.
     #[must_use]
     pub fn bind_along(&self, places: impl IntoIterator<Item = Point>) -> Option<Vec<MeshPoint>> {
-        let located = self.locate_along(places)?;
-        Some(located.into_iter().map(|(_, located)| self.bound(located)).collect())
-    }
-
-    /// As [`Self::bind_along`], but places outside stay where they are: the nearest triangle carries them beyond its edge, with shares that may be
-    /// negative.
-    #[must_use]
-    pub fn bind_beyond(&self, places: impl IntoIterator<Item = Point>) -> Option<Vec<MeshPoint>> {
-        let beyond = |(p, located): (Point, Located)| MeshPoint {
-            vertices: self.vertices[located.triangle],
-            shares: geometry::barycentric(self.triangles[located.triangle], p).unwrap_or(located.barycentric),
-        };
-        Some(self.locate_along(places)?.into_iter().map(beyond).collect())
-    }
-
-    /// The nearest point of the mesh to each of `places`.
-    fn locate_along(&self, places: impl IntoIterator<Item = Point>) -> Option<Vec<(Point, Located)>> {
         let mut last = 0;
-        let located = |p: Point| {
+        let bound = |p: Point| {
             let here = geometry::barycentric(*self.triangles.get(last)?, p);
             // Inside for sure: on an edge the smallest index counts.
             let inside = here.filter(|barycentric| barycentric.iter().all(|&b| b > 2.0 * EDGE_TOLERANCE));
@@ -124,9 +107,9 @@ impl PointLocator {
                 None => self.nearest(p)?,
             };
             last = located.triangle;
-            Some((p, located))
+            Some(self.bound(located))
         };
-        places.into_iter().map(located).collect()
+        places.into_iter().map(bound).collect()
     }
 
     fn bound(&self, located: Located) -> MeshPoint {
@@ -134,6 +117,12 @@ impl PointLocator {
             vertices: self.vertices[located.triangle],
             shares: located.barycentric,
         }
+    }
+
+    /// The point of the mesh at `p`, carried by its triangle. `None` outside the mesh.
+    #[must_use]
+    pub fn bind_inside(&self, p: Point) -> Option<MeshPoint> {
+        self.locate(p).map(|located| self.bound(located))
     }
 
     /// The point of the mesh nearest to `p`, carried by its triangle. `None` only for a mesh without triangles.

@@ -22,6 +22,7 @@ mod separate;
 mod shape;
 mod shape_data;
 mod sheets;
+mod textures;
 mod truth;
 mod workbench;
 mod workshop;

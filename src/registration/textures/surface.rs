@@ -3,7 +3,7 @@
 use crate::math::Point;
 use crate::mesh::geometry;
 
-/// No pixel of the surface.
+/// No pixel of the grid.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// A pixel whose middle a triangle covers.
@@ -16,22 +16,53 @@ pub(super) struct Covered {
     pub(super) around: [u32; 4],
 }
 
-/// A fine mesh on the reference, in working pixels, and the pixels that it covers.
+/// A fine mesh on the reference, in working pixels.
 #[derive(Debug)]
 pub(super) struct Surface {
     pub(super) triangles: Vec<[usize; 3]>,
     pub(super) vertices: Vec<Point>,
     /// The vertices next to each.
     pub(super) neighbours: Vec<Vec<usize>>,
+}
+
+/// The pixels that a surface covers, or every second or third of them along and across: a picture that is blurred needs no more.
+#[derive(Debug)]
+pub(super) struct Grid {
+    /// Working pixels from one to the next.
+    pub(super) step: usize,
     pub(super) pixels: Vec<Covered>,
 }
 
 impl Surface {
-    /// Where triangles overlap, the last one is taken.
-    pub(super) fn new([width, height]: [usize; 2], triangles: &[[usize; 3]], vertices: &[Point]) -> Self {
-        let mut at: Vec<Option<([usize; 3], [f32; 3])>> = vec![None; width * height];
+    pub(super) fn new(triangles: &[[usize; 3]], vertices: &[Point]) -> Self {
+        let mut neighbours = vec![Vec::new(); vertices.len()];
         for triangle in triangles {
-            let corners = geometry::corners(vertices, *triangle);
+            for k in 0..3 {
+                let [a, b] = [triangle[k], triangle[(k + 1) % 3]];
+                neighbours[a].push(b);
+                neighbours[b].push(a);
+            }
+        }
+        for next in &mut neighbours {
+            next.sort_unstable();
+            next.dedup();
+        }
+        Self {
+            triangles: triangles.to_vec(),
+            vertices: vertices.to_vec(),
+            neighbours,
+        }
+    }
+}
+
+impl Grid {
+    /// Of a picture of this many columns and rows; where triangles overlap, the last one is taken.
+    pub(super) fn new(surface: &Surface, size: [usize; 2], step: usize) -> Self {
+        let [width, height] = size.map(|side| side.div_ceil(step));
+        let vertices: Vec<Point> = surface.vertices.iter().map(|v| v / step as f64).collect();
+        let mut at: Vec<Option<([usize; 3], [f32; 3])>> = vec![None; width * height];
+        for triangle in &surface.triangles {
+            let corners = geometry::corners(&vertices, *triangle);
             let [a, b, c] = corners;
             let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
             // Casts saturate.
@@ -72,23 +103,6 @@ impl Surface {
                 ],
             });
         }
-        let mut neighbours = vec![Vec::new(); vertices.len()];
-        for triangle in triangles {
-            for k in 0..3 {
-                let [a, b] = [triangle[k], triangle[(k + 1) % 3]];
-                neighbours[a].push(b);
-                neighbours[b].push(a);
-            }
-        }
-        for next in &mut neighbours {
-            next.sort_unstable();
-            next.dedup();
-        }
-        Self {
-            triangles: triangles.to_vec(),
-            vertices: vertices.to_vec(),
-            neighbours,
-            pixels,
-        }
+        Self { step, pixels }
     }
 }
