@@ -220,7 +220,7 @@ impl Reader<'_> {
                 mirror.span().start,
                 SceneProblem::BadChoice {
                     key: format!("pose '{}': mirror", written.name.get_ref()),
-                    value: other.to_string(),
+                    value: other.as_str().map_or_else(|| other.to_string(), str::to_owned),
                     allowed: "true, false or 'auto'",
                 },
             )),

@@ -275,6 +275,37 @@ fn anchors_regions_and_guard_are_read() {
 }
 
 #[test]
+fn facing_and_registration_are_read_or_refused_with_their_words() {
+    let read = |keys: &str| {
+        format!("version = 1\n[texture]\nregister = \"off\"\n[[pose]]\nname = \"a\"\nsource = \"a.png\"\n{keys}\n")
+    };
+    for (keys, facing) in [
+        ("", Facing::AsDrawn),
+        ("mirror = false", Facing::AsDrawn),
+        ("mirror = true", Facing::Mirrored),
+        ("mirror = \"auto\"", Facing::Auto),
+    ] {
+        let scene = parse(&read(keys)).expect("a scene");
+        let drawing = scene.drawing_of(0).expect("a drawing").1;
+        assert_eq!(
+            (drawing.facing, scene.register),
+            (facing, crate::pipeline::Register::Off)
+        );
+    }
+    for wrong in ["\"maybe\"", "1"] {
+        let (line, message) = refused(&read(&format!("mirror = {wrong}")));
+        assert_eq!(line, Some(7), "{message}");
+        assert!(
+            message.contains(&format!("mirror is '{}'", wrong.trim_matches('"'))),
+            "{message}"
+        );
+    }
+    let (line, message) = refused(&read("").replace("off", "on"));
+    assert_eq!(line, Some(3), "{message}");
+    assert!(message.contains("'auto' or 'off'"), "{message}");
+}
+
+#[test]
 fn walls_and_bounds_are_read() {
     let scene = parse(&format!(
         "{TWO}[pose_space]\nbounded = true\nwalls = [[[0.2, 0.0], [0.2, 0.6]], [[1, 2], [3, 4], [5, 6]]]\n"
