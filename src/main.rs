@@ -3,6 +3,7 @@
 mod cli;
 #[cfg(feature = "explorer")]
 mod explorer;
+mod tables;
 
 use std::process::ExitCode;
 

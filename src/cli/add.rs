@@ -10,6 +10,7 @@ use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value};
 
 use super::values::Numbers;
 use super::{Failure, Verbosity};
+use crate::tables::{name_of, tables};
 
 /// Add one more drawing to a scene
 ///
@@ -127,7 +128,7 @@ fn added(
         );
     }
     let at = has_places.then(|| at.unwrap_or(newcomer.at));
-    if let (Some(at), Some(pose)) = (&at, last_pose(document)) {
+    if let (Some(at), Some(pose)) = (&at, tables(document, "pose").pop()) {
         pose.insert("at", Item::Value(Value::Array(at.iter().copied().collect())));
     }
     let text = document.to_string();
@@ -198,33 +199,11 @@ fn first_pose(document: &DocumentMut) -> Option<&dyn TableLike> {
     }
 }
 
-fn last_pose(document: &mut DocumentMut) -> Option<&mut dyn TableLike> {
-    match document.get_mut("pose")? {
-        Item::ArrayOfTables(poses) => poses.iter_mut().last().map(|pose| pose as &mut dyn TableLike),
-        Item::Value(Value::Array(poses)) => {
-            let pose = poses.iter_mut().last()?.as_inline_table_mut();
-            pose.map(|pose| pose as &mut dyn TableLike)
-        }
-        _ => None,
-    }
-}
-
 /// Writes where a landmark lies on a pose.
 fn set_place(document: &mut DocumentMut, landmark: &str, pose: &str, place: Value) {
-    let is_named = |table: &dyn TableLike| table.get("name").and_then(Item::as_str) == Some(landmark);
-    let table: Option<&mut dyn TableLike> = match document.get_mut("landmark") {
-        Some(Item::ArrayOfTables(tables)) => {
-            let tables = tables.iter_mut().map(|table| table as &mut dyn TableLike);
-            tables.into_iter().find(|table| is_named(&**table))
-        }
-        Some(Item::Value(Value::Array(values))) => {
-            let tables = values.iter_mut().filter_map(Value::as_inline_table_mut);
-            tables
-                .map(|table| table as &mut dyn TableLike)
-                .find(|table| is_named(&**table))
-        }
-        _ => None,
-    };
+    let table = tables(document, "landmark")
+        .into_iter()
+        .find(|table| name_of(&**table) == Some(landmark));
     let places = table
         .and_then(|table| table.get_mut("at"))
         .and_then(Item::as_table_like_mut);

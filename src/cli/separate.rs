@@ -1,7 +1,6 @@
 //! `inbetween separate`.
 
 use std::collections::BTreeSet;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
@@ -9,9 +8,10 @@ use inbetween::export::{PendingFile, png_bytes, svg_text};
 use inbetween::input::{Art, Canvas, Picture};
 use inbetween::render::{Frame, VectorFrame, VectorNode, VectorShape};
 use inbetween::scene::{Scene, Separated, SeparatedDrawing};
-use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, TableLike, Value};
+use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value};
 
 use super::{Failure, Verbosity};
+use crate::tables::{name_of, tables, tables_of};
 
 /// What of a pose says how its drawing is read; of the pictures that are written nothing is left to be said.
 const OF_READING: [&str; 10] = [
@@ -223,7 +223,7 @@ fn edit(
         }
     }
     for landmark in tables(document, "landmark") {
-        let name = landmark.get("name").and_then(Item::as_str).unwrap_or_default();
+        let name = name_of(landmark).unwrap_or_default();
         let Some(layer) = separated
             .layers
             .iter()
@@ -264,16 +264,7 @@ fn name_handles(handles: &mut Item, pose: usize, separated: &Separated) {
         .iter()
         .map(|layer| layer.handles[pose].iter().peekable())
         .collect();
-    let written: Vec<&mut dyn TableLike> = match handles {
-        Item::Value(Value::Array(values)) => values
-            .iter_mut()
-            .filter_map(Value::as_inline_table_mut)
-            .map(|table| table as &mut dyn TableLike)
-            .collect(),
-        Item::ArrayOfTables(tables) => tables.iter_mut().map(|table| table as &mut dyn TableLike).collect(),
-        _ => Vec::new(),
-    };
-    for handle in written {
+    for handle in tables_of(handles) {
         let from = handle.get("from").and_then(Item::as_array).map(|from| {
             let numbers = from
                 .iter()
@@ -292,19 +283,6 @@ fn name_handles(handles: &mut Item, pose: usize, separated: &Separated) {
     }
 }
 
-/// The tables of a list, however it is written.
-fn tables<'a>(document: &'a mut DocumentMut, key: &str) -> Vec<&'a mut dyn TableLike> {
-    match document.get_mut(key) {
-        Some(Item::ArrayOfTables(tables)) => tables.iter_mut().map(|table| table as &mut dyn TableLike).collect(),
-        Some(Item::Value(Value::Array(values))) => values
-            .iter_mut()
-            .filter_map(Value::as_inline_table_mut)
-            .map(|table| table as &mut dyn TableLike)
-            .collect(),
-        _ => Vec::new(),
-    }
-}
-
 /// Writes all files or none.
 fn write(files: &[Written], arguments: &Arguments) -> anyhow::Result<()> {
     let folder = &arguments.output;
@@ -317,19 +295,12 @@ fn write(files: &[Written], arguments: &Arguments) -> anyhow::Result<()> {
     }
     let is_new = !folder.exists();
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    let written = || -> anyhow::Result<()> {
-        let mut pending = Vec::new();
-        for file in files {
-            let mut own = PendingFile::create(&folder.join(&file.name))?;
-            own.write_all(&file.bytes)
-                .with_context(|| format!("cannot write {}", own.target().display()))?;
-            pending.push(own);
-        }
-        Ok(PendingFile::commit_all(pending)?)
-    };
-    let done = written();
+    let whole = files
+        .iter()
+        .map(|file| (folder.join(&file.name), file.bytes.as_slice()));
+    let done = PendingFile::write_together(whole);
     if done.is_err() && is_new {
         let _ = std::fs::remove_dir(folder);
     }
-    done
+    Ok(done?)
 }

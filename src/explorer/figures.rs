@@ -12,7 +12,7 @@ use inbetween::math::Point;
 use inbetween::outline::Outline;
 use inbetween::scene::{DrawnSource, PoseSource, ReadingSettings, Scene, SceneBuildError};
 use serde_json::{Value, json};
-use toml_edit::{DocumentMut, Item};
+use toml_edit::DocumentMut;
 
 use super::correspondences::{LONGEST_SIDE, outline_json, picture_json, smaller};
 use super::http::{Request, Response};
@@ -20,6 +20,8 @@ use super::model::Shown;
 use super::pictures::index;
 use super::problem::{Problem, Refusal};
 use super::session::Session;
+use super::stamp::stamp;
+use crate::tables::{name_of, tables};
 
 /// The keys of a pose that say how its drawing is read.
 const KEYS: [&str; 4] = ["figure", "gap", "paper", "threshold"];
@@ -222,31 +224,22 @@ fn reading_json(reading: &ReadingSettings) -> Value {
 
 /// Which of the keys that say how a drawing is read the scene's text has for a pose.
 fn own_keys(text: &str, pose: &str) -> Vec<&'static str> {
-    let document = text.parse::<DocumentMut>().ok();
-    let tables = document.as_ref().and_then(|document| document.get("pose"));
-    let has = |key: &str| match tables {
-        Some(Item::ArrayOfTables(tables)) => tables
-            .iter()
-            .any(|table| table.get("name").and_then(Item::as_str) == Some(pose) && table.contains_key(key)),
-        Some(Item::Value(value)) => value.as_array().is_some_and(|tables| {
-            let tables = tables.iter().filter_map(toml_edit::Value::as_inline_table);
-            let named = |name: &toml_edit::Value| name.as_str() == Some(pose);
-            tables
-                .into_iter()
-                .any(|table| table.get("name").is_some_and(named) && table.contains_key(key))
-        }),
-        _ => false,
+    let Ok(mut document) = text.parse::<DocumentMut>() else {
+        return Vec::new();
     };
-    KEYS.into_iter().filter(|key| has(key)).collect()
+    let own = tables(&mut document, "pose")
+        .into_iter()
+        .find(|table| name_of(&**table) == Some(pose));
+    let has = |key: &&str| own.as_ref().is_some_and(|table| table.contains_key(key));
+    KEYS.into_iter().filter(has).collect()
 }
 
 /// What tells a drawing's file from an older one of the same name.
 fn file_mark(scene: &Scene, source: &Path) -> String {
     let file = scene.file.parent().unwrap_or(Path::new(".")).join(source);
-    let written = std::fs::metadata(file).and_then(|data| Ok((data.len(), data.modified()?)));
-    let Ok((length, modified)) = written else {
+    let Some((length, Some(written))) = stamp(&file) else {
         return String::new();
     };
-    let since = modified.duration_since(UNIX_EPOCH).unwrap_or_default();
+    let since = written.duration_since(UNIX_EPOCH).unwrap_or_default();
     format!("{length:x}-{:x}", since.as_nanos())
 }

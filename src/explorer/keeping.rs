@@ -4,7 +4,7 @@
 //! drawings that they were made of.
 
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::sync::{Mutex, PoisonError};
 
 use inbetween::export::PendingFile;
 use inbetween::scene::Scene;
@@ -13,6 +13,7 @@ use serde_json::Value;
 
 use super::problem::{Problem, Refusal};
 use super::session::Session;
+use super::stamp::{Stamp, stamp};
 
 /// What the scene file of a folder is called.
 const SCENE_FILE: &str = "scene.toml";
@@ -36,14 +37,6 @@ pub(crate) struct DrawingCopy {
     taken: Option<Stamp>,
 }
 
-/// What tells a file from an older one of the same name: its length and when it was written.
-type Stamp = (u64, Option<SystemTime>);
-
-fn stamp(file: &Path) -> Option<Stamp> {
-    let data = std::fs::metadata(file).ok()?;
-    Some((data.len(), data.modified().ok()))
-}
-
 impl DrawingCopy {
     /// A copy that was just made.
     pub(crate) fn new(original: PathBuf, copy: PathBuf) -> Self {
@@ -52,7 +45,7 @@ impl DrawingCopy {
     }
 
     /// Copies the drawing again if its file has changed. One that is gone is looked at again later.
-    pub(super) fn refresh(&mut self) {
+    fn refresh(&mut self) {
         let now = stamp(&self.original);
         if now.is_none() || now == self.taken {
             return;
@@ -60,6 +53,33 @@ impl DrawingCopy {
         let bytes = std::fs::read(&self.original);
         if bytes.is_ok_and(|bytes| PendingFile::write_whole(&self.copy, &bytes).is_ok()) {
             self.taken = now;
+        }
+    }
+}
+
+/// What is in a temporary folder of a session: a scene that was begun, or nothing any more.
+#[derive(Debug)]
+pub(super) struct Temporary(Mutex<Option<Begun>>);
+
+impl Temporary {
+    pub(super) fn new(begun: Option<Begun>) -> Self {
+        Self(Mutex::new(begun))
+    }
+
+    /// Takes drawings again that have changed since they were copied.
+    pub(super) fn refresh_copies(&self) {
+        let mut begun = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        for copy in begun.iter_mut().flat_map(|begun| &mut begun.copies) {
+            copy.refresh();
+        }
+    }
+
+    /// The scene lies elsewhere now: the folder goes.
+    fn forget(&self) {
+        let mut begun = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(begun) = begun.take() {
+            // What cannot be removed the system removes some day.
+            let _ = std::fs::remove_dir_all(begun.temporary);
         }
     }
 }
@@ -87,7 +107,7 @@ pub(super) fn keep(body: &[u8], session: &Session) -> Result<Value, Refusal> {
     let file = folder.join(SCENE_FILE);
     write_all(&wanted_files(&scene, document.base(), &file)?, folder)?;
     document.move_to(file);
-    session.forget_temporary();
+    session.temporary.forget();
     session.read_document(&document);
     drop(document);
     Ok(session.state_json())
@@ -129,15 +149,14 @@ fn wanted_files(scene: &Scene, text: &str, file: &Path) -> Result<Vec<(PathBuf, 
 /// Writes all files, or none.
 fn write_all(wanted: &[(PathBuf, Vec<u8>)], folder: &Path) -> Result<(), Refusal> {
     let is_new = !folder.exists();
-    let written = wanted.iter().try_for_each(|(target, bytes)| -> anyhow::Result<()> {
-        std::fs::create_dir_all(target.parent().unwrap_or(folder))?;
-        Ok(PendingFile::write_whole(target, bytes)?)
-    });
-    written.map_err(|error| {
-        // None of them was there before.
+    let written = || -> anyhow::Result<()> {
         for (target, _) in wanted {
-            let _ = std::fs::remove_file(target);
+            std::fs::create_dir_all(target.parent().unwrap_or(folder))?;
         }
+        let whole = wanted.iter().map(|(target, bytes)| (target.clone(), bytes.as_slice()));
+        Ok(PendingFile::write_together(whole)?)
+    };
+    written().map_err(|error| {
         if is_new {
             let _ = std::fs::remove_dir(folder);
         }

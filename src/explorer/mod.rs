@@ -303,6 +303,7 @@ mod security;
 mod server;
 mod session;
 mod socket;
+mod stamp;
 mod state;
 mod thinning;
 mod wire;

@@ -17,7 +17,7 @@ use super::document::{Document, Outside, Place};
 use super::draggers::Draggers;
 use super::edit::{self, Context, Op};
 use super::jobs::Jobs;
-use super::keeping::{Begun, DrawingCopy};
+use super::keeping::{Begun, Temporary};
 use super::model::Shown;
 use super::picture_cache::PictureCache;
 use super::problem::{Problem, Refusal};
@@ -39,8 +39,8 @@ pub(crate) struct Session {
     pub(super) draggers: Draggers,
     /// The export.
     pub(super) jobs: Jobs,
-    /// Of a scene that lies in a temporary folder: that folder, and its drawings.
-    temporary: Mutex<Option<(PathBuf, Vec<DrawingCopy>)>>,
+    /// What the scene has in a temporary folder.
+    pub(super) temporary: Temporary,
 }
 
 /// The body of `POST api/edit`.
@@ -71,11 +71,10 @@ impl Session {
 
     /// Opens a scene that was begun for drawings.
     pub(crate) fn begun(begun: Begun) -> Self {
-        let document = Document::open(&begun.file, Place::Temporary);
-        Self::of(document, Some((begun.temporary, begun.copies)))
+        Self::of(Document::open(&begun.file, Place::Temporary), Some(begun))
     }
 
-    fn of(document: Document, temporary: Option<(PathBuf, Vec<DrawingCopy>)>) -> Self {
+    fn of(document: Document, begun: Option<Begun>) -> Self {
         let session = Self {
             document: Mutex::new(document),
             state: Mutex::new(State {
@@ -87,7 +86,7 @@ impl Session {
             pictures: PictureCache::default(),
             draggers: Draggers::default(),
             jobs: Jobs::default(),
-            temporary: Mutex::new(temporary),
+            temporary: Temporary::new(begun),
         };
         session.read_document(&session.lock_document());
         session
@@ -307,23 +306,6 @@ impl Session {
     /// The scene's path, as it was given.
     pub(crate) fn file(&self) -> PathBuf {
         self.lock_document().file().to_owned()
-    }
-
-    /// Takes drawings again that have changed since the scene that was begun for them copied them.
-    pub(crate) fn refresh_copies(&self) {
-        let mut temporary = self.temporary.lock().unwrap_or_else(PoisonError::into_inner);
-        for copy in temporary.iter_mut().flat_map(|(_, copies)| copies) {
-            copy.refresh();
-        }
-    }
-
-    /// The scene lies elsewhere now: its temporary folder goes.
-    pub(super) fn forget_temporary(&self) {
-        let mut temporary = self.temporary.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((folder, _)) = temporary.take() {
-            // What cannot be removed the system removes some day.
-            let _ = std::fs::remove_dir_all(folder);
-        }
     }
 
     /// The scene's text.

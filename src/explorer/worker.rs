@@ -1,12 +1,13 @@
 //! What takes longer than a request may wait, and the look at the disk.
 
 use std::path::PathBuf;
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 use inbetween::scene::{Scene, Workbench};
 
 use super::problem::Problem;
 use super::session::Session;
+use super::stamp::{Stamp, stamp};
 
 /// The time between two looks at the disk.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(400);
@@ -39,21 +40,21 @@ pub(crate) fn run(session: &Session) {
     }
 }
 
-/// What tells a file from an older one of the same name.
-type Stamp = (PathBuf, Option<(u64, Option<SystemTime>)>);
+/// A file and its stamp.
+type Stamped = (PathBuf, Option<Stamp>);
 
 /// Looks at the scene file and the drawings again and again, for as long as the process lives.
 pub(crate) fn watch(session: &Session) {
-    let mut known: Vec<Stamp> = Vec::new();
+    let mut known: Vec<Stamped> = Vec::new();
     loop {
         std::thread::sleep(BETWEEN_LOOKS);
         session.look_at_file();
-        session.refresh_copies();
+        session.temporary.refresh_copies();
         let Some(scene) = session.shown().scene.clone() else {
             continue;
         };
         let now = stamps(&scene);
-        let has_changed = |stamp: &Stamp| known.iter().any(|old| old.0 == stamp.0 && old.1 != stamp.1);
+        let has_changed = |stamp: &Stamped| known.iter().any(|old| old.0 == stamp.0 && old.1 != stamp.1);
         if now.iter().any(has_changed) {
             session.reread_drawings();
         }
@@ -61,15 +62,14 @@ pub(crate) fn watch(session: &Session) {
     }
 }
 
-fn stamps(scene: &Scene) -> Vec<Stamp> {
+fn stamps(scene: &Scene) -> Vec<Stamped> {
     let folder = scene.file.parent().map(PathBuf::from).unwrap_or_default();
-    let of = |scene: &Scene| -> Vec<Stamp> {
+    let of = |scene: &Scene| -> Vec<Stamped> {
         let drawn = scene.drawn_poses().into_iter();
         let files = drawn.filter_map(|pose| Some(folder.join(&scene.drawing_of(pose)?.1.file)));
         files
             .map(|file| {
-                let data = std::fs::metadata(&file).ok();
-                let stamp = data.map(|data| (data.len(), data.modified().ok()));
+                let stamp = stamp(&file);
                 (file, stamp)
             })
             .collect()

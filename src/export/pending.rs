@@ -117,6 +117,20 @@ impl PendingFile {
         Self::create(target)?.fill(bytes)
     }
 
+    /// Writes files that belong together, each whole: all of them or none.
+    ///
+    /// # Errors
+    /// As [`Self::commit_all`].
+    pub fn write_together<'a>(files: impl IntoIterator<Item = (PathBuf, &'a [u8])>) -> Result<(), ExportError> {
+        let pending = files.into_iter().map(|(target, bytes)| {
+            let mut file = Self::create(&target)?;
+            file.write_all(bytes)
+                .map_err(|error| ExportError::cannot_write(&target, error))?;
+            Ok(file)
+        });
+        Self::commit_all(pending.collect::<Result<Vec<_>, ExportError>>()?)
+    }
+
     /// Writes `bytes` and commits.
     ///
     /// # Errors

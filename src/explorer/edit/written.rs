@@ -5,22 +5,11 @@ use serde_json::Value as Json;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
 use crate::explorer::problem::{Problem, Refusal};
+pub(super) use crate::tables::tables;
 
 /// What the text does not have.
 pub(super) fn missing(what: impl std::fmt::Display) -> Refusal {
     Refusal::conflict(Problem::new(format!("the scene has no {what}")))
-}
-
-/// The tables of `[[name]]`, or of `name = [{...}]`.
-pub(super) fn tables<'a>(document: &'a mut DocumentMut, name: &str) -> Vec<&'a mut dyn TableLike> {
-    match document.get_mut(name) {
-        Some(Item::ArrayOfTables(tables)) => tables.iter_mut().map(|table| table as &mut dyn TableLike).collect(),
-        Some(Item::Value(Value::Array(values))) => values
-            .iter_mut()
-            .filter_map(|value| value.as_inline_table_mut().map(|table| table as &mut dyn TableLike))
-            .collect(),
-        _ => Vec::new(),
-    }
 }
 
 /// The table of `[[kind]]` with this name.
