@@ -98,8 +98,8 @@ export function drawNow() {
 
 // The poses as they are drawn, for the pad.
 
-/** Milliseconds without another shape after which thumbnails are drawn. */
-const THUMBNAILS_AFTER = 400;
+/** Milliseconds without another shape after which textures are registered and thumbnails drawn. */
+const RESTING_AFTER = 400;
 /** Pixels of a thumbnail while it is drawn. */
 const THUMBNAIL = 192;
 let resting = 0;
@@ -129,7 +129,7 @@ const paint = (frame, how) => painter.frame({ ...frame, layers: frame.layers.map
 let loading = 0;
 /** The revision of the pictures that the painter has. */
 let pictures = null;
-/** Whether they were registered to one another. */
+/** Whether they are to be registered to one another. */
 let registered;
 /** One of the pictures of a layer. */
 async function picture(layer, index, kind) {
@@ -140,16 +140,14 @@ async function picture(layer, index, kind) {
 async function load() {
   const mine = ++loading;
   const { puppet, meshes } = store;
+  clearTimeout(resting);
+  registered = store.scene?.texture?.register;
   try {
     const all = (kind) => Promise.all(puppet.layers.map((layer, l) => Promise.all(layer.textures.map((_, k) => picture(l, k, kind)))));
     const isKnown = pictures === puppet.pictures;
-    const [words, bitmaps, masks] = await Promise.all([
-      getWords('surface'), isKnown ? null : all('colour'), isKnown || !puppet.nearest ? null : all('inside'),
-    ]);
+    const [bitmaps, masks] = await Promise.all([isKnown ? null : all('colour'), isKnown || !puppet.nearest ? null : all('inside')]);
     if (mine !== loading) return;
-    const finer = readSurfaces(words);
-    surfaces = meshes.map((mesh, k) => new Surface(mesh, finer[k]));
-    registered = store.scene?.texture?.register;
+    surfaces = meshes.map((mesh) => new Surface(mesh, null));
     painter.load(puppet, surfaces, bitmaps, masks);
     pictures = puppet.pictures;
     loaded = puppet;
@@ -157,7 +155,24 @@ async function load() {
     redraw();
     drawUnder();
     clearTimeout(resting);
-    resting = setTimeout(drawThumbnails, THUMBNAILS_AFTER);
+    resting = setTimeout(rest, RESTING_AFTER);
+  } catch (error) {
+    console.error(error);
+  }
+}
+
+/** What takes longer than a picture may: while edits follow one another, nobody waits for it. */
+async function rest() {
+  const mine = loading;
+  try {
+    const finer = readSurfaces(await getWords('surface'));
+    if (mine !== loading) return;
+    if (finer.some(Boolean)) {
+      surfaces = store.meshes.map((mesh, k) => new Surface(mesh, finer[k]));
+      painter.load(loaded, surfaces, null);
+      redraw();
+    }
+    await drawThumbnails();
   } catch (error) {
     console.error(error);
   }
