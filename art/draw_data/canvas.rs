@@ -83,15 +83,7 @@ impl Canvas {
 
     /// Draws along a path with a round pen.
     pub(crate) fn line(&mut self, path: &BezPath, width: f64, colour: Rgb) {
-        let stroke = Stroke {
-            width: width as f32,
-            line_join: LineJoin::Round,
-            line_cap: tiny_skia::LineCap::Round,
-            ..Stroke::default()
-        };
-        if let Some(path) = skia(path) {
-            self.large.stroke_path(&path, &paint(colour), &stroke, enlarge(), None);
-        }
+        self.stroke(path, width, colour, enlarge());
     }
 
     /// Draws along a path with a broad nib, which is held at 45 degrees: lines that run along it are thin, lines across it are `width` wide.
@@ -99,14 +91,19 @@ impl Canvas {
         let held = Affine::rotate(-std::f64::consts::FRAC_PI_4) * Affine::scale_non_uniform(1.0, NIB);
         let round = held.inverse() * path.clone();
         let [a, b, c, d, e, f] = held.as_coeffs().map(|value| value as f32);
+        let placed = enlarge().pre_concat(Transform::from_row(a, b, c, d, e, f));
+        self.stroke(&round, width, colour, placed);
+    }
+
+    /// Draws along a path with a pen that is round before it is placed on the picture.
+    fn stroke(&mut self, path: &BezPath, width: f64, colour: Rgb, placed: Transform) {
         let stroke = Stroke {
             width: width as f32,
             line_join: LineJoin::Round,
             line_cap: tiny_skia::LineCap::Round,
             ..Stroke::default()
         };
-        if let Some(path) = skia(&round) {
-            let placed = enlarge().pre_concat(Transform::from_row(a, b, c, d, e, f));
+        if let Some(path) = skia(path) {
             self.large.stroke_path(&path, &paint(colour), &stroke, placed, None);
         }
     }

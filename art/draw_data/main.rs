@@ -1,4 +1,4 @@
-//! Draws the six scenes in `data/`: `cargo run --example draw_data -- data`.
+//! Draws the six scenes in `data/`: `cargo run -p inbetween-art --bin draw_data -- data`.
 //!
 //! The pictures there were made by this program and are committed beside it. Drawing them again gives the same bytes.
 //!

@@ -6,7 +6,7 @@
 // COMMAND is a built `inbetween`. The drawings are made here: a painted figure on paper, a ball apart from it, and a speck.
 import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { api, browser as launched, drawn, edited, saved, serve, state, until } from './driver.mjs';
+import { api, browser as launched, drawn, edited, report, saved, serve, state, until } from './driver.mjs';
 import { encodePng } from './picture.mjs';
 
 const [command, out] = process.argv.slice(2, 4).map((path) => resolve(path));
@@ -14,12 +14,7 @@ const folder = join(out, 'paper');
 rmSync(folder, { recursive: true, force: true });
 mkdirSync(folder, { recursive: true });
 
-let failed = false;
-const errors = [];
-const check = (holds, what) => {
-  console.log(`${holds ? 'ok  ' : 'FAIL'} explorer drawings: ${what}`);
-  failed ||= !holds;
-};
+const { check, errors, run: prove } = report('drawings');
 
 // The drawings.
 
@@ -47,17 +42,7 @@ for (const [name, bytes] of Object.entries(SHEETS)) writeFileSync(join(folder, n
 
 const { address, end } = await serve(command, Object.keys(SHEETS).map((name) => join('paper', name)), out);
 const browser = await launched();
-try {
-  await proofs();
-} catch (error) {
-  console.log(`FAIL explorer drawings: ${error.stack}`);
-  errors.forEach((text) => console.log(`     the page says: ${text}`));
-  failed = true;
-} finally {
-  await browser.close();
-  end();
-}
-process.exit(failed ? 1 : 0);
+await prove(proofs, () => browser.close(), end);
 
 async function proofs() {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, deviceScaleFactor: 1, colorScheme: 'light' });

@@ -72,3 +72,28 @@ export async function edited(page, label) {
   await until(page, async (wanted) => (await (await fetch('api/state')).json()).undo?.startsWith(wanted), label);
   return saved(page);
 }
+
+/** The proofs of a page: `check` says what holds, `errors` is what the page reports, and `run` ends with an exit code that says whether all of it is well. */
+export function report(name) {
+  let failed = false;
+  const errors = [];
+  return {
+    errors,
+    check(holds, what) {
+      console.log(`${holds ? 'ok  ' : 'FAIL'} explorer ${name}: ${what}`);
+      failed ||= !holds;
+    },
+    async run(proofs, ...ends) {
+      try {
+        await proofs();
+      } catch (error) {
+        console.log(`FAIL explorer ${name}: ${error.stack}`);
+        errors.forEach((text) => console.log(`     the page says: ${text}`));
+        failed = true;
+      } finally {
+        for (const end of ends) await end();
+      }
+      process.exit(failed ? 1 : 0);
+    },
+  };
+}

@@ -11,7 +11,7 @@ import { execFileSync } from 'node:child_process';
 import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { request } from 'node:http';
 import { basename, dirname, join, resolve } from 'node:path';
-import { browser as launched, drawn, edited, saved, serve, state, until } from './driver.mjs';
+import { browser as launched, drawn, edited, report, saved, serve, state, until } from './driver.mjs';
 import { conflict, keysInTime, landmarkByKeys, lines, pseudoPoses } from './edits.mjs';
 import { decodePng, difference } from './picture.mjs';
 import { placesOfMatches, placesOfPicture } from './places.mjs';
@@ -26,27 +26,11 @@ cpSync(dirname(original), join(folder, name), { recursive: true });
 const scene = join(folder, name, basename(original));
 const run = (...rest) => execFileSync(command, rest, { cwd: folder, stdio: ['ignore', 'pipe', 'ignore'] });
 
-let failed = false;
-// What the page reports.
-const errors = [];
-const check = (holds, what) => {
-  console.log(`${holds ? 'ok  ' : 'FAIL'} explorer ${name}: ${what}`);
-  failed ||= !holds;
-};
+const { check, errors, run: prove } = report(name);
 
 const { address, end } = await serve(command, [scene], folder);
 const browser = await launched();
-try {
-  await proofs();
-} catch (error) {
-  console.log(`FAIL explorer ${name}: ${error.stack}`);
-  errors.forEach((text) => console.log(`     the page says: ${text}`));
-  failed = true;
-} finally {
-  await browser.close();
-  end();
-}
-process.exit(failed ? 1 : 0);
+await prove(proofs, () => browser.close(), end);
 
 async function proofs() {
   await strangers();

@@ -24,14 +24,17 @@ export function placed({ corners, parts }, points) {
   return [0, 1].map((d) => corners.reduce((sum, v, k) => sum + parts[k] * points[2 * v + d], 0));
 }
 
-/** Whether a place lies inside rings of points x, y, by the even-odd rule. */
-export function isInside(rings, [x, y]) {
-  let inside = false;
+/** Where rings of points x, y cross a height. */
+export function crossingsAt(rings, y) {
+  const found = [];
   for (const ring of rings) {
     for (let k = 0, before = ring.length - 2; k < ring.length; before = k, k += 2) {
       const [ax, ay, bx, by] = [ring[before], ring[before + 1], ring[k], ring[k + 1]];
-      if (ay <= y !== by <= y && x < ax + ((y - ay) * (bx - ax)) / (by - ay)) inside = !inside;
+      if (ay <= y !== by <= y) found.push(ax + ((y - ay) * (bx - ax)) / (by - ay));
     }
   }
-  return inside;
+  return found;
 }
+
+/** Whether a place lies inside rings of points x, y, by the even-odd rule. */
+export const isInside = (rings, [x, y]) => crossingsAt(rings, y).filter((crossing) => x < crossing).length % 2 === 1;

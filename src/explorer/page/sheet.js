@@ -3,7 +3,7 @@
 import { getJson } from './api.js';
 import { s, set } from './dom.js';
 import { isLayered, layerOfSheets } from './figures.js';
-import { isInside } from './located.js';
+import { crossingsAt, isInside } from './located.js';
 import { edit, emit, rounded } from './state.js';
 
 const SAID = {
@@ -92,23 +92,13 @@ export function placeIn(all) {
   let best = null;
   for (let row = 1; row < ROWS; row++) {
     const y = low + ((high - low) * row) / ROWS;
-    const crossings = all.flatMap((points) => crossingsAt(points, y)).sort((a, b) => a - b);
+    const crossings = crossingsAt(all, y).sort((a, b) => a - b);
     for (let k = 0; k + 1 < crossings.length; k += 2) {
       const length = crossings[k + 1] - crossings[k];
       if (!best || length > best.length) best = { length, at: [(crossings[k] + crossings[k + 1]) / 2, y] };
     }
   }
   return (best?.at ?? [all[0][0], all[0][1]]).map((value) => rounded(value, 2));
-}
-
-/** Where a ring crosses a height. */
-function crossingsAt(points, y) {
-  const found = [];
-  for (let k = 0, before = points.length - 2; k < points.length; before = k, k += 2) {
-    const [ax, ay, bx, by] = [points[before], points[before + 1], points[k], points[k + 1]];
-    if (ay <= y !== by <= y) found.push(ax + ((y - ay) * (bx - ax)) / (by - ay));
-  }
-  return found;
 }
 
 /** Asks for what is drawn at a place, if there is something. */
