@@ -15,7 +15,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use inbetween::appearance::Appearance;
 use inbetween::input::{Drawing, SvgOptions, read_svg};
 use inbetween::math::Point;
-use inbetween::mesh::subdivided;
+use inbetween::mesh::{Topology, subdivided};
 use inbetween::pipeline::{LayerSpec, PoseSpec, map_layer};
 use inbetween::registration::{Embedded, Pin, RingPairs, register, register_textures};
 
@@ -80,6 +80,7 @@ fn drawn(criterion: &mut Criterion) {
         .collect();
     let triangles = mapping.poses.topology().triangles();
     let (fine, places) = subdivided(triangles, mapping.poses.topology().vertex_count(), 3);
+    let fine = Topology::new(places.len(), fine).expect("a mesh");
     let positions: Vec<&[Point]> = mapping.poses.positions().iter().map(Vec::as_slice).collect();
     let embedded = Embedded {
         triangles,

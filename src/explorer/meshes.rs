@@ -72,7 +72,7 @@ pub(super) fn surface(session: &Session) -> Result<Response, Refusal> {
     let mut bytes = Vec::new();
     let mut words = Words(&mut bytes);
     for layer in 0..bench.layers().len() {
-        let Some(mesh) = bench.texture_mesh(layer).filter(|_| !bench.is_drawn_as_curves(layer)) else {
+        let Some(mesh) = bench.texture_mesh(layer) else {
             words.u32(0);
             continue;
         };

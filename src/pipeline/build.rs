@@ -258,11 +258,13 @@ impl Build {
         self.has_figure_of(other) && self.has_pictures_of(other) && art(self) == art(other)
     }
 
-    /// The mesh on which the pictures of a layer are registered to one another; `None` where the mapping's own mesh carries them: nothing is drawn inside,
-    /// they are too unlike, or the specification does not want it. Made when it is first asked for.
+    /// The mesh on which the pictures of a layer are registered to one another; `None` where the mapping's own mesh carries them (nothing is drawn inside,
+    /// they are too unlike, or the specification does not want it) and where frames are curves. Made when it is first asked for.
     #[must_use]
     pub fn texture_mesh(&self, layer: usize) -> Option<Arc<TextureMesh>> {
-        if self.spec.texture.register == Register::Off || self.spec.texture.sampling == Sampling::Nearest {
+        let texture = &self.spec.texture;
+        if texture.register == Register::Off || texture.sampling == Sampling::Nearest || self.is_drawn_as_curves(layer)
+        {
             return None;
         }
         let (of, mapping) = (&self.layers[layer], self.figure.layers[layer].mapping());

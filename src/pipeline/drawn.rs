@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use super::PipelineError;
 use super::boundaries::{Matched, match_refusal};
 use super::drawings::mirrored;
-use super::facing::REFLECTED_SHARE;
 use super::named::named_pairs;
 use crate::appearance::{Appearance, Profile};
 use crate::compatible::Guide;
@@ -21,6 +20,9 @@ use crate::registration::{Explained, Pin, Registration, RingPairs, register};
 /// From this share of the reference's figure on that is found in a pose, it is the same character in the same colours: drawn anew, two thirds of one
 /// are found at least, of another an eighth at most.
 const FOUND_SHARE: f64 = 0.5;
+
+/// A drawing looks reflected if its reflection differs from the reference by less than this share of what it differs itself.
+const REFLECTED_SHARE: f64 = 0.8;
 
 /// Samples of a profile: one a row of a match.
 const PROFILE_SAMPLES: usize = 512;
@@ -131,8 +133,7 @@ pub(super) fn match_by_drawing(
         matched.looks_mirrored = matched.looks_mirrored
             && pins[pose].is_empty()
             && registration.residual(pose).is_some_and(|residual| {
-                let reflected = residual_reflected(&drawings[pose], &outer[reference], &appearances[reference]);
-                reflected.is_some_and(|reflected| reflected < REFLECTED_SHARE * residual)
+                looks_reflected(residual, &drawings[pose], &outer[reference], &appearances[reference])
             });
     }
     order_holes(outlines, reference, &carried);
@@ -172,11 +173,15 @@ fn beginnings(candidates: &RingCandidates, pose: usize) -> Vec<RingPairs> {
         .collect()
 }
 
-/// How much a drawing, reflected, differs from the reference where it is registered to it; `None` where it cannot be.
-pub(super) fn residual_reflected(drawing: &Drawing, reference: &Ring, shown: &Arc<Appearance>) -> Option<f64> {
-    let reflected = mirrored(drawing.clone(), None).ok()?;
+/// Whether a drawing, reflected, differs clearly less from the reference than it does itself, which is by `residual`. One that cannot be reflected or
+/// registered does not.
+pub(super) fn looks_reflected(residual: f64, drawing: &Drawing, reference: &Ring, shown: &Arc<Appearance>) -> bool {
+    let Ok(reflected) = mirrored(drawing.clone(), None) else {
+        return false;
+    };
     let rings = [reference.clone(), reflected.outline.outer().clone()];
-    residual(&rings, [shown, &Arc::new(Appearance::new(&reflected))])
+    let left = self::residual(&rings, [shown, &Arc::new(Appearance::new(&reflected))]);
+    left.is_some_and(|left| left < REFLECTED_SHARE * residual)
 }
 
 /// How much the second of two drawings differs from the first where it is registered to it; `None` where it cannot be.

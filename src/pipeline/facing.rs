@@ -2,14 +2,11 @@
 
 use std::sync::Arc;
 
-use super::drawn::{residual, residual_reflected};
+use super::drawn::{looks_reflected, residual};
 use super::spec::{CharacterSpec, DrawnPose, Facing, LayerSpec, PoseShape};
 use crate::appearance::Appearance;
 use crate::input::Drawing;
 use crate::matching::{MatchOptions, match_rings};
-
-/// A drawing looks reflected if its reflection differs from the reference by less than this share of what it differs itself.
-pub(super) const REFLECTED_SHARE: f64 = 0.8;
 
 impl CharacterSpec {
     /// The specification with every [`Facing::Auto`] settled: a drawing is reflected where its reflection shows clearly more of the layer's reference than it
@@ -79,8 +76,5 @@ fn faces_away(reference: &Drawing, drawing: &Drawing) -> bool {
         };
         return match_rings(&rings, &[], &options).is_ok_and(|matched| matched.report.poses[1].looks_mirrored);
     }
-    let left = residual(&rings, [&shown, &own]);
-    let reflected = residual_reflected(drawing, &rings[0], &shown);
-    left.zip(reflected)
-        .is_some_and(|(left, reflected)| reflected < REFLECTED_SHARE * left)
+    residual(&rings, [&shown, &own]).is_some_and(|residual| looks_reflected(residual, drawing, &rings[0], &shown))
 }

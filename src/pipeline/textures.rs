@@ -34,6 +34,7 @@ pub(super) fn registered(layer: &LayerSpec, boundaries: &Boundaries, mapping: &M
     let side = median_side(triangles, positions[reference]) * own.scale();
     let parts = ((side / SIDE_PX).round() as usize).clamp(1, MOST_PARTS);
     let (fine, places) = subdivided(triangles, positions[reference].len(), parts);
+    let fine = Topology::new(places.len(), fine).ok()?;
     let drawn = Embedded {
         triangles,
         fine: (&fine, &places),
@@ -54,7 +55,7 @@ pub(super) fn registered(layer: &LayerSpec, boundaries: &Boundaries, mapping: &M
         of_drawing.unwrap_or_else(|| places.clone())
     };
     let anchors = (0..layer.poses.len()).map(anchors).collect();
-    TextureMesh::new(Topology::new(places.len(), fine).ok()?, anchors)
+    TextureMesh::new(fine, anchors)
 }
 
 /// The median length of the sides of some triangles.

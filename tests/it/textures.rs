@@ -5,7 +5,7 @@ use std::sync::Arc;
 use inbetween::appearance::Appearance;
 use inbetween::input::Picture;
 use inbetween::math::Point;
-use inbetween::mesh::{geometry, subdivided};
+use inbetween::mesh::{Topology, geometry, subdivided};
 use inbetween::outline::{Outline, Ring};
 use inbetween::registration::{Embedded, register_textures};
 
@@ -46,6 +46,7 @@ fn mesh() -> (Vec<[usize; 3]>, Vec<Point>) {
 fn registered(drawings: &[Arc<Appearance>], wanted: bool) -> Option<[Vec<Point>; 2]> {
     let (triangles, positions) = mesh();
     let (fine, places) = subdivided(&triangles, positions.len(), 4);
+    let fine = Topology::new(places.len(), fine).expect("a mesh");
     let drawn = Embedded {
         triangles: &triangles,
         fine: (&fine, &places),

@@ -3,8 +3,8 @@
 //! What the mesh leaves over (lines a few pixels apart, below the size of its triangles) is taken out by a smooth warp a pose, so that a cross-fade
 //! shows one line where two drawings have one line. It is what the paper leaves to others (NWM, section 5: "we make no attempt to warp textures").
 //!
-//! [`Embedded`] drawings: the vertices of a fine mesh on the reference and the coarse mesh that carries them -> for every pose how far each vertex is
-//! from where the mesh has it, as a place of the *reference*: what is drawn there is what the pose shows at the vertex.
+//! [`Embedded`] drawings: a mesh that has all poses, and a finer one on it -> for every pose the places of the mesh that show there what the reference
+//! shows at the vertices of the finer one.
 //!
 //! 1. The reference's pixels that the mesh covers, each with its fine triangle (`surface`), fewer of them where pictures are blurred.
 //! 2. At each of four levels of the scale space, coarse to fine: the pose is seen through the mesh as the reference is, and what still differs
@@ -12,8 +12,8 @@
 //!    with a membrane between neighbours (Horn and Schunck 1981, <https://doi.org/10.1016/0004-3702(81)90024-2>) (`flow`).
 //! 3. Where the warp bends more than it may, it is made smoother until no triangle can turn over at any weights that are not negative (`bending`).
 //!
-//! Cost: O(#pixels) a step and more for the scale space, about 150 ms a pose on one thread. Limit: what is further away than about 18 working pixels (3 % of a figure unit) is not found; what only one
-//! drawing has stays where the mesh has it.
+//! Cost: O(#pixels) a step and more for the scale space, about 150 ms a pose on one thread. Limit: what is further away than
+//! about 18 working pixels (3 % of a figure unit) is not found; what only one drawing has stays where the mesh has it.
 
 mod bending;
 mod flow;
@@ -25,7 +25,7 @@ use rayon::prelude::*;
 
 use crate::appearance::Appearance;
 use crate::math::Point;
-use crate::mesh::{MeshPoint, PointLocator};
+use crate::mesh::{MeshPoint, PointLocator, Topology};
 use flow::{Carrier, Flow};
 use surface::Surface;
 
@@ -34,8 +34,8 @@ use surface::Surface;
 pub struct Embedded<'a> {
     /// The mesh that has all poses.
     pub triangles: &'a [[usize; 3]],
-    /// A finer mesh on it: small triangles, and the place of each of their vertices.
-    pub fine: (&'a [[usize; 3]], &'a [MeshPoint]),
+    /// A finer mesh on it, and the place of each of its vertices.
+    pub fine: (&'a Topology, &'a [MeshPoint]),
     /// What each drawing shows.
     pub appearances: &'a [Arc<Appearance>],
     /// For each drawing, #vertices positions of the mesh in source units.
@@ -51,9 +51,9 @@ pub fn register_textures(drawn: &Embedded, reference: usize, is_wanted: &[bool])
         positions.iter().map(|p| appearance.to_pixels(*p)).collect()
     };
     let coarse = in_pixels(own, drawn.positions[reference]);
-    let (triangles, places) = drawn.fine;
+    let (topology, places) = drawn.fine;
     let vertices: Vec<Point> = places.iter().map(|place| place.at(&coarse)).collect();
-    let surface = Surface::new(triangles, &vertices);
+    let surface = Surface::new(topology, &vertices);
     let locator = PointLocator::new(drawn.triangles, &coarse);
     let carrier = Carrier {
         positions: &coarse,

@@ -1,7 +1,7 @@
 //! The reference's working pixels that a fine mesh covers.
 
 use crate::math::Point;
-use crate::mesh::geometry;
+use crate::mesh::{Topology, geometry};
 
 /// No pixel of the grid.
 pub(super) const NONE: u32 = u32::MAX;
@@ -34,21 +34,14 @@ pub(super) struct Grid {
 }
 
 impl Surface {
-    pub(super) fn new(triangles: &[[usize; 3]], vertices: &[Point]) -> Self {
+    pub(super) fn new(topology: &Topology, vertices: &[Point]) -> Self {
         let mut neighbours = vec![Vec::new(); vertices.len()];
-        for triangle in triangles {
-            for k in 0..3 {
-                let [a, b] = [triangle[k], triangle[(k + 1) % 3]];
-                neighbours[a].push(b);
-                neighbours[b].push(a);
-            }
-        }
-        for next in &mut neighbours {
-            next.sort_unstable();
-            next.dedup();
+        for (a, b) in topology.edges() {
+            neighbours[a].push(b);
+            neighbours[b].push(a);
         }
         Self {
-            triangles: triangles.to_vec(),
+            triangles: topology.triangles().to_vec(),
             vertices: vertices.to_vec(),
             neighbours,
         }
