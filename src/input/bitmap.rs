@@ -150,15 +150,13 @@ fn check_options(options: &BitmapOptions) -> Result<(), InputError> {
 }
 
 fn outlined(decoded: Decoded, options: &BitmapOptions) -> Result<Drawing, InputError> {
-    let mut notes = decoded.notes();
-    let image = decoded.image;
-    let mut found = find(&image, decoded.fidelity, options)?;
-    notes.append(&mut found.notes);
-    let threshold = options.threshold;
+    let image = &decoded.image;
     let mut refusal = None;
     for step in THRESHOLD_STEPS {
-        let moved = (threshold as f32 + step).clamp(0.005, 0.995);
-        match trace(&image, &found, moved, options, &notes) {
+        let moved = (options.threshold as f32 + step).clamp(0.005, 0.995);
+        // Found once more where it has to be traced again, which is rare: to keep it meanwhile is memory for every large drawing.
+        let found = find(image, decoded.fidelity, options)?;
+        match trace(image, found, moved, options, decoded.notes()) {
             Err(InputError::Outline(error)) => refusal = refusal.or(Some(InputError::Outline(error))),
             settled => return settled,
         }
@@ -168,12 +166,14 @@ fn outlined(decoded: Decoded, options: &BitmapOptions) -> Result<Drawing, InputE
 
 fn trace(
     image: &RgbaImage,
-    found: &Found,
+    mut found: Found,
     threshold: f32,
     options: &BitmapOptions,
-    taken: &[InputNote],
+    mut notes: Vec<InputNote>,
 ) -> Result<Drawing, InputError> {
-    let coverage = Coverage::framed(&found.coverage, image.width() as usize, threshold);
+    notes.append(&mut found.notes);
+    let measured = std::mem::take(&mut found.coverage);
+    let coverage = Coverage::framed(measured, image.width() as usize, threshold);
     let parts = Parts::of(&coverage, threshold);
     let pieces: Vec<Piece> = parts.parts.iter().map(Part::piece).collect();
     // Of a sprite every pixel counts.
@@ -201,7 +201,6 @@ fn trace(
         return Err(too_small);
     }
     let dirt = DIRT_AREA.max(DIRT_SHARE * largest.area);
-    let mut notes = taken.to_vec();
     if strips.iter().any(|strip| chosen.dropped.contains(strip)) {
         notes.push(InputNote::BorderStripLeftOut);
     }
@@ -223,7 +222,7 @@ fn trace(
             .chain(loose.iter().map(|(_, outline, _)| outline))
             .collect(),
     };
-    let picture = without_background(image, found, &filled);
+    let picture = without_background(image, &found, &filled);
     let mut in_order: Vec<LoosePart> = loose
         .into_iter()
         .map(|(part, outline, is_kept)| LoosePart {
@@ -308,33 +307,28 @@ fn without_background(image: &RgbaImage, found: &Found, filled: &[&Outline]) -> 
         .zip(image.as_raw().par_chunks(4 * width.max(1)))
         .enumerate()
         .for_each(|(y, (row, source))| {
+            let Some((paper, kept)) = &found.kept else {
+                for (pixel, source) in row.iter_mut().zip(source.chunks_exact(4)) {
+                    *pixel = premultiplied([source[0], source[1], source[2], source[3]]);
+                }
+                return;
+            };
             for (x, (pixel, source)) in row.iter_mut().zip(source.chunks_exact(4)).enumerate() {
-                let [red, green, blue, alpha] = [source[0], source[1], source[2], source[3]];
-                *pixel = match &found.kept {
-                    None => {
-                        let times_alpha = |c: u8| ((u16::from(c) * u16::from(alpha) + 127) / 255) as u8;
-                        [times_alpha(red), times_alpha(green), times_alpha(blue), alpha]
-                    }
-                    Some((paper, kept)) => {
-                        let index = y * width + x;
-                        let is_filled = covered_by_fill.as_ref().is_some_and(|inside| inside[index]);
-                        let share = if is_filled { 1.0 } else { f32::from(kept[index]) / 255.0 };
-                        if share <= 0.0 {
-                            continue;
-                        }
-                        // An edge pixel is a mixture of drawing and paper: take the paper's part out.
+                let index = y * width + x;
+                let is_filled = covered_by_fill.as_ref().is_some_and(|inside| inside[index]);
+                *pixel = match if is_filled { u8::MAX } else { kept[index] } {
+                    0 => continue,
+                    u8::MAX => [source[0], source[1], source[2], u8::MAX],
+                    // An edge pixel is a mixture of drawing and paper: take the paper's part out.
+                    alpha => {
+                        let share = f32::from(alpha) / 255.0;
                         let behind = paper.at(x, y);
-                        let unmixed = |c: u8, paper: f32| {
-                            (f32::from(c) - (1.0 - share) * 255.0 * paper)
+                        let [red, green, blue] = std::array::from_fn(|k| {
+                            (f32::from(source[k]) - (1.0 - share) * 255.0 * behind[k])
                                 .clamp(0.0, 255.0 * share)
                                 .round() as u8
-                        };
-                        [
-                            unmixed(red, behind[0]),
-                            unmixed(green, behind[1]),
-                            unmixed(blue, behind[2]),
-                            (255.0 * share).round() as u8,
-                        ]
+                        });
+                        [red, green, blue, alpha]
                     }
                 };
             }
@@ -345,6 +339,17 @@ fn without_background(image: &RgbaImage, found: &Found, filled: &[&Outline]) -> 
         pixels,
         origin: Point::zeros(),
         pixels_per_unit: 1.0,
+    }
+}
+
+fn premultiplied([red, green, blue, alpha]: [u8; 4]) -> [u8; 4] {
+    match alpha {
+        0 => [0; 4],
+        u8::MAX => [red, green, blue, alpha],
+        _ => {
+            let times_alpha = |c: u8| ((u16::from(c) * u16::from(alpha) + 127) / 255) as u8;
+            [times_alpha(red), times_alpha(green), times_alpha(blue), alpha]
+        }
     }
 }
 

@@ -59,7 +59,7 @@ mod tests {
         let measured: Vec<f32> = (0..40 * 30)
             .map(|k| f32::from(u8::from(is_ink(k % 40, k / 40))))
             .collect();
-        let coverage = Coverage::framed(&measured, 40, 0.5);
+        let coverage = Coverage::framed(measured, 40, 0.5);
         border_strips(&Parts::of(&coverage, 0.5)).len()
     }
 

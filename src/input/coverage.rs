@@ -8,6 +8,8 @@
 //!
 //! The field has a frame of one empty pixel, so that the iso-line of a drawing cut off by the border closes.
 
+use rayon::prelude::*;
+
 /// Values this near to 0 or 1 count as not anti-aliased.
 const FLAT: f32 = 0.04;
 /// Share of edge pixels with intermediate values up to which an image counts as not anti-aliased.
@@ -30,65 +32,88 @@ pub(super) struct Coverage {
 
 impl Coverage {
     /// The coverages `measured`, row by row, kept off `threshold`.
-    pub(super) fn framed(measured: &[f32], inner_width: usize, threshold: f32) -> Self {
+    pub(super) fn framed(measured: Vec<f32>, inner_width: usize, threshold: f32) -> Self {
         let inner_height = measured.len() / inner_width.max(1);
         let (width, height) = (inner_width + 2, inner_height + 2);
         let mut values = vec![0.0; width * height];
-        for row in 0..inner_height {
-            let start = (row + 1) * width + 1;
-            values[start..start + inner_width].copy_from_slice(&measured[row * inner_width..(row + 1) * inner_width]);
-        }
+        values[width..]
+            .par_chunks_mut(width)
+            .zip(measured.par_chunks_exact(inner_width.max(1)))
+            .for_each(|(row, measured)| row[1..=inner_width].copy_from_slice(measured));
+        // Of a large drawing this is as much memory as the filter then needs.
+        drop(measured);
         let mut coverage = Self { width, height, values };
         if coverage.is_binary(threshold) {
             coverage.smooth(threshold);
         }
-        for value in &mut coverage.values {
-            *value = keep_off(*value, *value >= threshold, threshold, CLEARANCE);
-        }
+        coverage.values.par_chunks_mut(width).for_each(|row| {
+            for value in row {
+                *value = keep_off(*value, *value >= threshold, threshold, CLEARANCE);
+            }
+        });
         coverage
     }
 
     fn is_binary(&self, threshold: f32) -> bool {
-        let (mut steps, mut intermediate) = (0_usize, 0_usize);
-        for row in self.values.chunks_exact(self.width) {
+        let counted = self.values.par_chunks_exact(self.width).map(|row| {
+            let (mut steps, mut intermediate) = (0_usize, 0_usize);
             for pair in row.windows(2) {
-                if (pair[0] >= threshold) != (pair[1] >= threshold) {
-                    steps += 1;
-                    intermediate += usize::from(pair.iter().any(|v| *v > FLAT && *v < 1.0 - FLAT));
-                }
+                let is_step = (pair[0] >= threshold) != (pair[1] >= threshold);
+                let is_soft = pair.iter().any(|v| *v > FLAT && *v < 1.0 - FLAT);
+                steps += usize::from(is_step);
+                intermediate += usize::from(is_step && is_soft);
             }
-        }
+            (steps, intermediate)
+        });
+        let (steps, intermediate) = counted.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
         intermediate as f64 <= BINARY_SHARE * steps as f64
     }
 
     /// Two passes of the binomial filter (1, 4, 6, 4, 1) / 16, each value kept on its side of the threshold.
     fn smooth(&mut self, threshold: f32) {
-        let inside: Vec<bool> = self.values.iter().map(|v| *v >= threshold).collect();
-        let (width, height) = (self.width as isize, self.height as isize);
-        for (step_x, step_y) in [(1, 0), (0, 1)] {
-            let before = self.values.clone();
-            let at = |x: isize, y: isize| {
-                if x < 0 || y < 0 || x >= width || y >= height {
-                    0.0
-                } else {
-                    before[(y * width + x) as usize]
-                }
-            };
-            for y in 0..height {
-                for x in 0..width {
-                    let near = at(x - step_x, y - step_y) + at(x + step_x, y + step_y);
-                    let far = at(x - 2 * step_x, y - 2 * step_y) + at(x + 2 * step_x, y + 2 * step_y);
-                    self.values[(y * width + x) as usize] = (6.0 * at(x, y) + 4.0 * near + far) / 16.0;
-                }
+        let clearance = SMOOTH_CLEARANCE.min(0.5 * threshold.min(1.0 - threshold));
+        let width = self.width;
+        let mut along_rows = vec![0.0; self.values.len()];
+        along_rows
+            .par_chunks_mut(width)
+            .zip(self.values.par_chunks_exact(width))
+            .for_each(|(out, row)| filter_row(out, row));
+        let empty = vec![0.0; width];
+        let row = |k: Option<usize>| {
+            k.and_then(|k| along_rows.get(k * width..(k + 1) * width))
+                .unwrap_or(&empty)
+        };
+        self.values.par_chunks_mut(width).enumerate().for_each(|(y, out)| {
+            let (above, below) = (row(y.checked_sub(1)), row(Some(y + 1)));
+            let (far_above, far_below) = (row(y.checked_sub(2)), row(Some(y + 2)));
+            let rows = row(Some(y))
+                .iter()
+                .zip(above.iter().zip(below))
+                .zip(far_above.iter().zip(far_below));
+            for (out, ((own, (above, below)), (far_above, far_below))) in out.iter_mut().zip(rows) {
+                let inside = *out >= threshold;
+                let smooth = (6.0 * own + 4.0 * (above + below) + (far_above + far_below)) / 16.0;
+                *out = keep_off(smooth, inside, threshold, clearance);
             }
-        }
-        for (value, inside) in self.values.iter_mut().zip(inside) {
-            *value = keep_off(
-                *value,
-                inside,
-                threshold,
-                SMOOTH_CLEARANCE.min(0.5 * threshold.min(1.0 - threshold)),
-            );
+        });
+    }
+}
+
+/// The binomial filter along a row, beyond which is nothing.
+fn filter_row(out: &mut [f32], row: &[f32]) {
+    let at = |k: Option<usize>| k.and_then(|k| row.get(k)).copied().unwrap_or(0.0);
+    let edge = |k: usize| {
+        let near = at(k.checked_sub(1)) + at(Some(k + 1));
+        let far = at(k.checked_sub(2)) + at(Some(k + 2));
+        (6.0 * row[k] + 4.0 * near + far) / 16.0
+    };
+    let count = row.len();
+    for k in (0..count.min(2)).chain(count.saturating_sub(2).max(2.min(count))..count) {
+        out[k] = edge(k);
+    }
+    for (out, window) in out.iter_mut().skip(2).zip(row.windows(5)) {
+        if let [a, b, c, d, e] = window {
+            *out = (6.0 * c + 4.0 * (b + d) + (a + e)) / 16.0;
         }
     }
 }

@@ -47,36 +47,31 @@ impl Edges {
             Fidelity::Exact => None,
             Fidelity::Lossy => Some(widened(contrast, width, RINGING_REACH, u8::max)),
         };
-        let coverage = (0..contrast.len())
-            .into_par_iter()
+        let mut coverage = vec![0.0; contrast.len()];
+        coverage
+            .par_iter_mut()
             .with_min_len(1 << 14)
-            .map(|at| {
-                let own = f32::from(contrast[at]);
-                let (strong, least) = (f32::from(strongest[at]), f32::from(faintest));
-                if let Some(around) = &ringing
-                    && own <= RINGING_SHARE * f32::from(around[at])
-                    && own < RISEN * strong
-                {
-                    return if strong > least {
-                        (own / strong).min(0.5 * own / least)
-                    } else {
-                        0.0
-                    };
+            .enumerate()
+            .for_each(|(at, share)| {
+                let (own, strong) = (contrast[at], strongest[at]);
+                if strong <= faintest {
+                    return;
                 }
-                if own <= least {
-                    // Still a fraction, so that faint edge pixels count: noise in the open has nothing strong beside it.
-                    if strong > least {
-                        (own / strong).min(0.5 * own / least)
-                    } else {
-                        0.0
-                    }
+                let of_strongest = f32::from(own) / f32::from(strong);
+                // A faint edge pixel counts by a fraction: noise in the open has nothing strong beside it.
+                let faint = || of_strongest.min(0.5 * f32::from(own) / f32::from(faintest));
+                let is_ringing = ringing.as_ref().is_some_and(|around| {
+                    let own = f32::from(own);
+                    own <= RINGING_SHARE * f32::from(around[at]) && own < RISEN * f32::from(strong)
+                });
+                *share = if is_ringing || own <= faintest {
+                    faint()
                 } else if weakest[at] > faintest {
                     1.0
                 } else {
-                    own / strong
-                }
-            })
-            .collect();
+                    of_strongest
+                };
+            });
         Self { coverage, radius }
     }
 }

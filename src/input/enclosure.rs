@@ -1,26 +1,43 @@
-//! Inside and outside of what is drawn: floods, borders and depths on a grid of pixels.
+//! Inside and outside of what is drawn: floods, regions, borders and depths on a grid of pixels.
+
+use rayon::prelude::*;
+
+use super::runs::{Run, Runs};
 
 /// How deep each pixel lies inside a mask, in steps from side to side from what is outside of it, the frame of the picture counted
 /// as outside; up to `most + 1`. Cost O(#pixels).
-pub(super) fn depths(mask: &[bool], width: usize, most: usize) -> Vec<usize> {
-    let mut depths: Vec<usize> = mask.iter().map(|&inside| if inside { most + 1 } else { 0 }).collect();
-    let height = mask.len() / width.max(1);
-    let mut sweep = |start: usize, stride: usize, count: usize| {
-        for backwards in [false, true] {
-            let mut depth = 0;
-            for k in 0..count {
-                let k = if backwards { count - 1 - k } else { k };
-                let at = &mut depths[start + k * stride];
-                depth = (depth + 1).min(*at);
-                *at = depth;
-            }
+pub(super) fn depths(mask: &[bool], width: usize, most: u16) -> Vec<u16> {
+    let width = width.max(1);
+    let deepest = most.saturating_add(1);
+    let mut depths: Vec<u16> = mask.iter().map(|&inside| if inside { deepest } else { 0 }).collect();
+    depths.par_chunks_mut(width).for_each(|row| {
+        let mut depth = 0;
+        for own in row.iter_mut() {
+            depth = (depth + 1).min(*own);
+            *own = depth;
+        }
+        depth = 0;
+        for own in row.iter_mut().rev() {
+            depth = (depth + 1).min(*own);
+            *own = depth;
+        }
+    });
+    let rows = depths.len() / width;
+    let mut before = vec![0_u16; width];
+    let mut sweep = |row: &mut [u16]| {
+        for (own, before) in row.iter_mut().zip(&mut before) {
+            *before = (*before + 1).min(*own);
+            *own = *before;
         }
     };
-    for row in 0..height {
-        sweep(row * width, 1, width);
+    for row in depths.chunks_exact_mut(width) {
+        sweep(row);
     }
-    for column in 0..width {
-        sweep(column, width, height);
+    // From below the last row, which is outside.
+    sweep(&mut vec![0; width]);
+    for row in 0..rows {
+        let row = rows - 1 - row;
+        sweep(&mut depths[row * width..(row + 1) * width]);
     }
     depths
 }
@@ -45,33 +62,18 @@ pub(super) fn touches(mask: &[bool], at: usize, width: usize) -> bool {
 
 /// What is reached from `seeds` over pixels that are not drawn, from side to side. Cost O(#pixels).
 pub(super) fn flood(is_drawn: &[bool], width: usize, seeds: &[usize]) -> Vec<bool> {
-    let mut reached = vec![false; is_drawn.len()];
-    let mut open: Vec<usize> = Vec::new();
+    let bare = Runs::of(is_drawn, width, |is_drawn| !is_drawn);
+    let components = bare.components(|_, _| false);
+    let mut is_reached = vec![false; components.count];
     for &seed in seeds {
-        if !is_drawn[seed] && !reached[seed] {
-            reached[seed] = true;
-            open.push(seed);
+        if let Some(run) = bare.at(seed % width, seed / width) {
+            is_reached[components.label_of[run] as usize] = true;
         }
     }
-    while let Some(at) = open.pop() {
-        let column = at % width;
-        let mut visit = |other: usize| {
-            if !is_drawn[other] && !reached[other] {
-                reached[other] = true;
-                open.push(other);
-            }
-        };
-        if column > 0 {
-            visit(at - 1);
-        }
-        if column + 1 < width {
-            visit(at + 1);
-        }
-        if at >= width {
-            visit(at - width);
-        }
-        if at + width < is_drawn.len() {
-            visit(at + width);
+    let mut reached = vec![false; is_drawn.len()];
+    for (run, label) in bare.all().iter().zip(&components.label_of) {
+        if is_reached[*label as usize] {
+            reached[run.pixels(width)].fill(true);
         }
     }
     reached
@@ -125,66 +127,66 @@ pub(super) fn outer_border(is_drawn: &[bool], width: usize) -> Vec<usize> {
 }
 
 /// A connected region of a mask.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(super) struct Region {
-    /// Its pixels. At most 2^26 are read.
-    pub(super) pixels: Vec<u32>,
+    runs: Vec<Run>,
+    /// How many pixels it has.
+    pub(super) area: usize,
 }
 
 impl Region {
+    /// The indices of its pixels in a picture of the given width, row by row.
+    pub(super) fn pixels(&self, width: usize) -> impl Iterator<Item = usize> + '_ {
+        self.runs.iter().flat_map(move |run| run.pixels(width))
+    }
+
+    /// Sets its pixels in a mask of the given width.
+    pub(super) fn mark(&self, mask: &mut [bool], width: usize) {
+        for run in &self.runs {
+            mask[run.pixels(width)].fill(true);
+        }
+    }
+
     /// Whether something drawn lies in it: seen from its own box, what is not it falls into pieces, of which one does not reach the
     /// box's frame.
     pub(super) fn has_island(&self, drawn: &[bool], width: usize) -> bool {
-        let places = || self.pixels.iter().map(|&at| (at as usize % width, at as usize / width));
-        let (mut low, mut high) = ((usize::MAX, usize::MAX), (0, 0));
-        for (x, y) in places() {
-            low = (low.0.min(x), low.1.min(y));
-            high = (high.0.max(x), high.1.max(y));
-        }
+        let columns = || self.runs.iter().map(|run| run.columns());
+        let (Some(first), Some(last)) = (self.runs.first(), self.runs.last()) else {
+            return false;
+        };
+        let left = columns().map(|columns| columns.start).min().unwrap_or(0);
+        let right = columns().map(|columns| columns.end).max().unwrap_or(0);
         // One pixel around it, so that the surroundings hang together.
-        let (box_width, box_height) = (high.0 - low.0 + 3, high.1 - low.1 + 3);
+        let (box_width, box_height) = (right - left + 2, last.row() - first.row() + 3);
         let mut own = vec![false; box_width * box_height];
-        for (x, y) in places() {
-            own[(y - low.1 + 1) * box_width + x - low.0 + 1] = true;
+        for run in &self.runs {
+            let start = (run.row() - first.row() + 1) * box_width + run.columns().start - left + 1;
+            own[start..start + run.len()].fill(true);
         }
         let around = flood(&own, box_width, &border(box_width, box_height));
-        (0..own.len()).any(|k| {
-            let (x, y) = (k % box_width, k / box_width);
-            let is_within = (1..box_width - 1).contains(&x) && (1..box_height - 1).contains(&y);
-            !own[k] && !around[k] && is_within && drawn[(y + low.1 - 1) * width + x + low.0 - 1]
+        (1..box_height - 1).any(|y| {
+            let row = y * box_width;
+            (1..box_width - 1)
+                .any(|x| !own[row + x] && !around[row + x] && drawn[(y + first.row() - 1) * width + x + left - 1])
         })
     }
 }
 
 /// The regions of a mask, joined from side to side, in the order of their first pixels. Cost O(#pixels).
 pub(super) fn regions(mask: &[bool], width: usize) -> Vec<Region> {
-    let mut seen = vec![false; mask.len()];
-    let mut regions = Vec::new();
-    for seed in 0..mask.len() {
-        if !mask[seed] || seen[seed] {
-            continue;
-        }
-        let mut pixels = vec![seed as u32];
-        seen[seed] = true;
-        let mut next = 0;
-        while next < pixels.len() {
-            let at = pixels[next] as usize;
-            next += 1;
-            let column = at % width;
-            let beside = [
-                (column > 0).then(|| at - 1),
-                (column + 1 < width).then_some(at + 1),
-                at.checked_sub(width),
-                (at + width < mask.len()).then_some(at + width),
-            ];
-            for other in beside.into_iter().flatten() {
-                if mask[other] && !seen[other] {
-                    seen[other] = true;
-                    pixels.push(other as u32);
-                }
-            }
-        }
-        regions.push(Region { pixels });
+    let runs = Runs::of(mask, width, |inside| *inside);
+    let components = runs.components(|_, _| false);
+    let mut regions = vec![
+        Region {
+            runs: Vec::new(),
+            area: 0
+        };
+        components.count
+    ];
+    for (run, label) in runs.all().iter().zip(&components.label_of) {
+        let region = &mut regions[*label as usize];
+        region.runs.push(*run);
+        region.area += run.len();
     }
     regions
 }

@@ -14,7 +14,7 @@ use image::RgbaImage;
 use rayon::prelude::*;
 
 use super::edges::{Edges, Fidelity};
-use super::enclosure::{border, depths, flood, neighbours, regions};
+use super::enclosure::{Region, border, depths, flood, neighbours, regions};
 use super::figure::{FigureKind, FigureRule, PaperRule, borders_covered, is_line_drawing, is_sheet};
 use super::interior::{fill, in_bytes, kept, open};
 use super::lines::{Ink, enclose};
@@ -201,13 +201,9 @@ fn page_around_middle(image: &RgbaImage) -> Option<Vec<bool>> {
             .into_iter()
             .map(|contrast| contrast <= most)
             .collect();
-        let largest = regions(&is_paper, width)
-            .into_iter()
-            .max_by_key(|region| region.pixels.len())?;
+        let largest = regions(&is_paper, width).into_iter().max_by_key(|region| region.area)?;
         let mut sheet = vec![false; is_paper.len()];
-        for at in largest.pixels {
-            sheet[at as usize] = true;
-        }
+        largest.mark(&mut sheet, width);
         let around = flood(&sheet, width, &border(width, height));
         let filled: Vec<bool> = around.into_iter().map(|around| !around).collect();
         page(&filled, width)
@@ -224,14 +220,10 @@ fn page(inside: &[bool], width: usize) -> Option<Vec<bool>> {
     if count(inside) < least {
         return None;
     }
-    let largest = regions(inside, width)
-        .into_iter()
-        .max_by_key(|region| region.pixels.len())?;
-    let area = largest.pixels.len() as f64;
+    let largest = regions(inside, width).into_iter().max_by_key(|region| region.area)?;
+    let area = largest.area as f64;
     let mut mask = vec![false; inside.len()];
-    for &at in &largest.pixels {
-        mask[at as usize] = true;
-    }
+    largest.mark(&mut mask, width);
     // The ends of each row have the same convex hull as the whole.
     let mut ends = Vec::new();
     for (y, row) in mask.chunks_exact(width).enumerate() {
@@ -250,7 +242,8 @@ fn page(inside: &[bool], width: usize) -> Option<Vec<bool>> {
     if area < PAGE_RECTANGLE * side(0, 1) * side(1, 2) {
         return None;
     }
-    let margin = (PAGE_MARGIN * width.min(inside.len() / width) as f64).ceil() as usize + 1;
+    // Casts saturate.
+    let margin = (PAGE_MARGIN * width.min(inside.len() / width) as f64).ceil() as u16 + 1;
     Some(
         depths(&mask, width, margin)
             .into_iter()
@@ -302,7 +295,7 @@ fn on_background(
         }
         None => {
             let mut outside = flood(&drawn, width, &border(width, image.height() as usize));
-            let shows_paper = |region: &[u32]| paper.is_seen_in(image, region);
+            let shows_paper = |region: &Region| paper.is_seen_in(image, region);
             let enclosed = open(&mut outside, &drawn, &contrast, width, &ink, radius, &shows_paper);
             (
                 FigureKind::Painted,
@@ -340,9 +333,9 @@ fn leave_out_grain(coverage: &mut [f32], drawn: &mut [bool], contrast: &[u8], wi
     let strong = f64::from(*strengths.select_nth_unstable(high).1);
     let least = (GRAIN_SHARE * strong).max(2.0 * f64::from(faintest)).min(strong);
     for region in regions(drawn, width) {
-        if region.pixels.iter().all(|&at| f64::from(contrast[at as usize]) < least) {
-            for &at in &region.pixels {
-                (drawn[at as usize], coverage[at as usize]) = (false, 0.0);
+        if region.pixels(width).all(|at| f64::from(contrast[at]) < least) {
+            for at in region.pixels(width) {
+                (drawn[at], coverage[at]) = (false, 0.0);
             }
         }
     }

@@ -14,6 +14,7 @@
 
 use image::{GrayImage, ImageBuffer, Luma};
 use imageproc::distance_transform::euclidean_squared_distance_transform;
+use rayon::prelude::*;
 
 /// A basin counts as one of its own if it is this many times wider than the passage into it.
 const LEAST_WIDENING: f32 = 1.5;
@@ -76,94 +77,125 @@ impl Basins {
     }
 }
 
-/// The gaps of at most `widest` pixels that let the outside into what lines of the given mean width enclose; the outside is where
-/// `seeds` are.
-pub(super) fn bridges(ink: &[bool], width: usize, widest: f32, line_width: f32, seeds: &[usize]) -> Vec<Bridge> {
-    let height = ink.len() / width.max(1);
-    // A drawing that touches the frame must not be seen as open there: the frame is as far away as it is.
-    let picture: GrayImage = ImageBuffer::from_fn(width as u32, height as u32, |x, y| {
-        Luma([u8::from(ink[y as usize * width + x as usize])])
-    });
-    if !ink.contains(&true) {
-        return Vec::new();
-    }
-    let squared = euclidean_squared_distance_transform(&picture);
-    let distance: Vec<f32> = squared.as_raw().iter().map(|d| d.sqrt() as f32).collect();
-    let mut order: Vec<usize> = (0..ink.len()).filter(|&at| !ink[at]).collect();
-    order.sort_unstable_by(|&a, &b| distance[b].total_cmp(&distance[a]).then(a.cmp(&b)));
+/// The bare pixels of a mask of ink, by their distance from it.
+pub(super) struct Bare<'a> {
+    scene: Ink<'a>,
+    /// A pixel's distance from the ink.
+    distance: Vec<f32>,
+    /// The pixels that are not ink, the farthest first.
+    order: Vec<u32>,
+}
 
-    const NONE: usize = usize::MAX;
-    let mut basin_of = vec![NONE; ink.len()];
-    let mut basins = Basins {
-        parent: Vec::new(),
-        peak: Vec::new(),
-    };
-    let mut gaps: Vec<(Bridge, usize, usize)> = Vec::new();
-    let scene = Ink { ink, width, height };
-    for at in order {
-        let own = distance[at];
-        let mut beside: Vec<usize> = Vec::new();
-        scene.for_each_neighbour(at, |other| {
-            if basin_of[other] != NONE {
-                let root = basins.root(basin_of[other]);
-                if !beside.contains(&root) {
-                    beside.push(root);
-                }
-            }
+impl<'a> Bare<'a> {
+    /// Measures the pixels of `ink`, which is `width` pixels wide.
+    pub(super) fn measure(ink: &'a [bool], width: usize) -> Self {
+        let height = ink.len() / width.max(1);
+        let scene = Ink { ink, width, height };
+        if !ink.contains(&true) {
+            return Self {
+                scene,
+                distance: Vec::new(),
+                order: Vec::new(),
+            };
+        }
+        // A drawing that touches the frame must not be seen as open there: the frame is as far away as it is.
+        let picture: GrayImage = ImageBuffer::from_fn(width as u32, height as u32, |x, y| {
+            Luma([u8::from(ink[y as usize * width + x as usize])])
         });
-        let Some((&first, rest)) = beside.split_first() else {
-            basin_of[at] = basins.parent.len();
-            basins.parent.push(basins.parent.len());
-            basins.peak.push(own);
-            continue;
+        let squared = euclidean_squared_distance_transform(&picture).into_raw();
+        let mut order: Vec<(u32, u32)> = (0_u32..)
+            .zip(&squared)
+            .filter(|(_, squared)| **squared > 0.0)
+            .map(|(at, squared)| (*squared as u32, at))
+            .collect();
+        // Squares are whole numbers.
+        order.par_sort_unstable_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
+        Self {
+            scene,
+            distance: squared.iter().map(|squared| squared.sqrt() as f32).collect(),
+            order: order.into_iter().map(|(_, at)| at).collect(),
+        }
+    }
+
+    /// The gaps of at most `widest` pixels that let the outside into what lines of the given mean width enclose; the outside is where
+    /// `seeds` are.
+    pub(super) fn bridges(&self, widest: f32, line_width: f32, seeds: &[usize]) -> Vec<Bridge> {
+        let Self { scene, distance, order } = self;
+        if order.is_empty() {
+            return Vec::new();
+        }
+        const NONE: usize = usize::MAX;
+        let mut basin_of = vec![NONE; distance.len()];
+        let mut basins = Basins {
+            parent: Vec::new(),
+            peak: Vec::new(),
         };
-        basin_of[at] = first;
-        for &other in rest {
-            let (a, b) = (basins.root(first), basins.root(other));
-            if a == b {
-                continue;
-            }
-            let narrower = basins.peak[a].min(basins.peak[b]);
-            let is_bay = narrower < LEAST_WIDENING * own + ROUNDING;
-            if is_bay || 2.0 * own - ROUNDING > widest {
-                basins.unite(a, b);
-                continue;
-            }
-            let known = gaps.iter().any(|(bridge, c, d)| {
-                let pair = [basins.root_of(*c), basins.root_of(*d)];
-                let (x, y) = scene.place(at);
-                pair.contains(&a) && pair.contains(&b) && bridge.distance(x, y) <= bridge.length() + line_width
+        let mut gaps: Vec<(Bridge, usize, usize)> = Vec::new();
+        for at in order.iter().map(|at| *at as usize) {
+            let own = distance[at];
+            let mut beside: Vec<usize> = Vec::new();
+            scene.for_each_neighbour(at, |other| {
+                if basin_of[other] != NONE {
+                    let root = basins.root(basin_of[other]);
+                    if !beside.contains(&root) {
+                        beside.push(root);
+                    }
+                }
             });
-            if known {
-                // The dam of a gap that was found higher up.
-                basin_of[at] = NONE;
-                break;
-            }
-            if gaps.len() == MOST_GAPS {
-                // This is no drawing in lines.
-                return Vec::new();
-            }
-            match scene.gap_at(at, own, line_width) {
-                Some(bridge) => {
-                    gaps.push((bridge, a, b));
+            let Some((&first, rest)) = beside.split_first() else {
+                basin_of[at] = basins.parent.len();
+                basins.parent.push(basins.parent.len());
+                basins.peak.push(own);
+                continue;
+            };
+            basin_of[at] = first;
+            for &other in rest {
+                let (a, b) = (basins.root(first), basins.root(other));
+                if a == b {
+                    continue;
+                }
+                let narrower = basins.peak[a].min(basins.peak[b]);
+                let is_bay = narrower < LEAST_WIDENING * own + ROUNDING;
+                if is_bay || 2.0 * own - ROUNDING > widest {
+                    basins.unite(a, b);
+                    continue;
+                }
+                let known = gaps.iter().any(|(bridge, c, d)| {
+                    let pair = [basins.root_of(*c), basins.root_of(*d)];
+                    let (x, y) = scene.place(at);
+                    pair.contains(&a) && pair.contains(&b) && bridge.distance(x, y) <= bridge.length() + line_width
+                });
+                if known {
+                    // The dam of a gap that was found higher up.
                     basin_of[at] = NONE;
                     break;
                 }
-                None => basins.unite(a, b),
+                if gaps.len() == MOST_GAPS {
+                    // This is no drawing in lines.
+                    return Vec::new();
+                }
+                match scene.gap_at(at, own, line_width) {
+                    Some(bridge) => {
+                        gaps.push((bridge, a, b));
+                        basin_of[at] = NONE;
+                        break;
+                    }
+                    None => basins.unite(a, b),
+                }
             }
         }
+        let outside: Vec<usize> = seeds
+            .iter()
+            .filter(|&&seed| basin_of[seed] != NONE)
+            .map(|&seed| basins.root(basin_of[seed]))
+            .collect();
+        gaps.into_iter()
+            .filter_map(|(bridge, a, b)| {
+                let is_outside = [a, b].map(|basin| outside.contains(&basins.root(basin)));
+                (is_outside[0] != is_outside[1]).then_some(bridge)
+            })
+            .collect()
     }
-    let outside: Vec<usize> = seeds
-        .iter()
-        .filter(|&&seed| basin_of[seed] != NONE)
-        .map(|&seed| basins.root(basin_of[seed]))
-        .collect();
-    gaps.into_iter()
-        .filter_map(|(bridge, a, b)| {
-            let is_outside = [a, b].map(|basin| outside.contains(&basins.root(basin)));
-            (is_outside[0] != is_outside[1]).then_some(bridge)
-        })
-        .collect()
 }
 
 impl Basins {

@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::enclosure::{neighbours, regions, touches};
+use super::enclosure::{Region, neighbours, regions, touches};
 use super::lines::Ink;
 
 /// The least share of a painted figure's area of an opening in it.
@@ -26,7 +26,7 @@ pub(super) fn open(
     width: usize,
     ink: &Ink,
     radius: usize,
-    shows_background: &dyn Fn(&[u32]) -> bool,
+    shows_background: &dyn Fn(&Region) -> bool,
 ) -> usize {
     let enclosed: Vec<bool> = outside
         .iter()
@@ -37,16 +37,14 @@ pub(super) fn open(
     let mut kept = 0;
     for region in regions(&enclosed, width) {
         // What shows is not a picture in itself: eyes have pupils.
-        let is_large = region.pixels.len() as f64 >= LEAST_OPENING * area;
+        let is_large = region.area as f64 >= LEAST_OPENING * area;
         if is_large
             && !region.has_island(drawn, width)
-            && shows_background(&region.pixels)
-            && !is_framed(&region.pixels, &enclosed, outside, contrast, width, ink, radius)
+            && shows_background(&region)
+            && !is_framed(&region, &enclosed, outside, contrast, width, ink, radius)
         {
-            for &at in &region.pixels {
-                outside[at as usize] = true;
-            }
-        } else if region.pixels.len() > (2 * radius + 1).pow(2) {
+            region.mark(outside, width);
+        } else if region.area > (2 * radius + 1).pow(2) {
             kept += 1;
         }
     }
@@ -56,7 +54,7 @@ pub(super) fn open(
 /// Whether a line runs around a region: what is drawn close to it differs from what is drawn a little farther; or whether it reaches
 /// the outer line, as white stripes and shirts do: the outside is close to a part of its rim.
 fn is_framed(
-    region: &[u32],
+    region: &Region,
     enclosed: &[bool],
     outside: &[bool],
     contrast: &[u8],
@@ -68,8 +66,8 @@ fn is_framed(
     let near = (radius + 1) as isize;
     let far = near + (WIDEST_FRAME * ink.diagonal).ceil() as isize;
     let (mut strong, mut beyond, mut sampled, mut by_outside) = (0.0, 0.0, 0_usize, 0_usize);
-    for &at in region {
-        let (x, y) = ((at as usize % width) as isize, (at as usize / width) as isize);
+    for at in region.pixels(width) {
+        let (x, y) = ((at % width) as isize, (at / width) as isize);
         for (dx, dy) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
             let pixel = |steps: isize| {
                 let (x, y) = (x + dx * steps, y + dy * steps);

@@ -3,14 +3,17 @@
 //! 1. A cell has the centres of four pixels as its corners. Where two inside corners face each other across two outside
 //!    ones, the asymptotes of the bilinear interpolant decide whether they join (Nielson and Hamann 1991, "The
 //!    asymptotic decider"). The two chords in such a cell then lie on opposite sides of the asymptotes and cannot cross.
-//! 2. Inside pixels are united into parts by the same decisions, so that a part's iso-line bounds exactly that part.
-//! 3. A loop is walked from every step from outside to inside along a row, with the inside on the positive side: outer
+//! 2. Runs of inside pixels (module `runs`) are united into parts by the same decisions, so that a part's iso-line bounds exactly that part.
+//! 3. A loop is walked from the left end of every run, with the inside on the positive side: outer
 //!    loops come out with positive area, holes with negative.
 //!
 //! Cost O(#pixels).
 
+use rayon::prelude::*;
+
 use super::coverage::Coverage;
 use super::loose::Piece;
+use super::runs::Runs;
 use crate::math::Point;
 
 /// The corners of a cell in positive order, relative to its first one.
@@ -19,7 +22,7 @@ const CORNERS: [(usize, usize); 4] = [(0, 0), (1, 0), (1, 1), (0, 1)];
 /// A connected part of the drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Part {
-    /// What its pixels are marked with.
+    /// Its index among the parts.
     pub(super) label: u32,
     /// Sum of its coverages, in pixels.
     pub(super) area: f64,
@@ -46,8 +49,10 @@ const CLICK: f64 = 0.02;
 pub(super) struct Parts<'a> {
     coverage: &'a Coverage,
     threshold: f32,
-    /// The part each pixel belongs to; 0 outside.
-    labels: Vec<u32>,
+    /// The inside pixels.
+    runs: Runs,
+    /// The part that each run belongs to.
+    part_of: Vec<u32>,
     /// All parts, in the order of their first pixel.
     pub(super) parts: Vec<Part>,
 }
@@ -55,49 +60,51 @@ pub(super) struct Parts<'a> {
 impl<'a> Parts<'a> {
     /// Unites the inside pixels of `coverage` into parts.
     pub(super) fn of(coverage: &'a Coverage, threshold: f32) -> Self {
-        let mut labels = vec![0; coverage.values.len()];
-        let mut field = Self {
+        let width = coverage.width;
+        let runs = Runs::of(&coverage.values, width, |value| *value >= threshold);
+        let components = runs.components(|row, column| saddle_joins(coverage, threshold, row * width + column));
+        let measured: Vec<(f64, Point)> = runs
+            .all()
+            .par_iter()
+            .with_min_len(64)
+            .map(|run| {
+                let (mut area, mut moment) = (0.0, 0.0);
+                for (column, value) in run.columns().zip(&coverage.values[run.pixels(width)]) {
+                    let value = f64::from(*value).min(1.0);
+                    area += value;
+                    moment += column as f64 * value;
+                }
+                // The frame takes the first row and column, and a centre is half a pixel off its pixel's corner.
+                (area, Point::new(moment - 0.5 * area, (run.row() as f64 - 0.5) * area))
+            })
+            .collect();
+        let nothing = |label: usize| Part {
+            label: label as u32,
+            area: 0.0,
+            centroid: Point::zeros(),
+            bounds: [[usize::MAX; 2], [0; 2]],
+        };
+        let mut parts: Vec<Part> = (0..components.count).map(nothing).collect();
+        for ((run, label), (area, moment)) in runs.all().iter().zip(&components.label_of).zip(measured) {
+            let part = &mut parts[*label as usize];
+            part.area += area;
+            part.centroid += moment;
+            // Inside pixels never lie in the frame.
+            let (first, last) = (run.columns().start - 1, run.columns().end - 2);
+            let [low, high] = &mut part.bounds;
+            *low = [low[0].min(first), low[1].min(run.row() - 1)];
+            *high = [high[0].max(last), high[1].max(run.row() - 1)];
+        }
+        for part in &mut parts {
+            part.centroid /= part.area;
+        }
+        Self {
             coverage,
             threshold,
-            labels: Vec::new(),
-            parts: Vec::new(),
-        };
-        let mut open = Vec::new();
-        for seed in 0..labels.len() {
-            if labels[seed] != 0 || !field.inside(seed) {
-                continue;
-            }
-            let label = field.parts.len() as u32 + 1;
-            let (mut area, mut moment) = (0.0, Point::zeros());
-            let mut bounds = [[usize::MAX; 2], [0; 2]];
-            labels[seed] = label;
-            open.push(seed);
-            while let Some(pixel) = open.pop() {
-                let value = f64::from(coverage.values[pixel]).min(1.0);
-                area += value;
-                moment += field.centre(pixel) * value;
-                // Inside pixels never lie in the frame.
-                let place = [pixel % coverage.width - 1, pixel / coverage.width - 1];
-                for axis in 0..2 {
-                    bounds[0][axis] = bounds[0][axis].min(place[axis]);
-                    bounds[1][axis] = bounds[1][axis].max(place[axis]);
-                }
-                field.for_each_joined(pixel, |other| {
-                    if labels[other] == 0 {
-                        labels[other] = label;
-                        open.push(other);
-                    }
-                });
-            }
-            field.parts.push(Part {
-                label,
-                area,
-                centroid: moment / area,
-                bounds,
-            });
+            runs,
+            part_of: components.label_of,
+            parts,
         }
-        field.labels = labels;
-        field
     }
 
     /// The part that a place in image coordinates means: that of its pixel, or the nearest not far away.
@@ -105,19 +112,18 @@ impl<'a> Parts<'a> {
         let (width, height) = (self.coverage.width, self.coverage.height);
         let reach = (CLICK * (width as f64).hypot(height as f64)).max(2.0);
         // Casts saturate.
-        let range = |middle: f64, end: usize| {
-            let first = (middle - reach).max(0.0) as usize;
-            first..((middle + reach + 2.0).max(0.0) as usize).min(end)
-        };
-        let pixels =
-            range(place.y, height).flat_map(|row| range(place.x, width).map(move |column| row * width + column));
-        let distances = pixels
-            .filter(|pixel| self.labels[*pixel] != 0)
-            .map(|pixel| (pixel, (self.centre(pixel) - place).norm()));
+        let first_row = (place.y - reach).max(0.0) as usize;
+        let rows = first_row..((place.y + reach + 2.0).max(0.0) as usize).min(height);
+        let column = (place.x + 0.5).round().max(0.0) as usize;
+        let distances = rows.flat_map(|row| self.runs.in_row(row)).map(|run| {
+            let pixels = self.runs.all()[run];
+            let nearest = column.clamp(pixels.columns().start, pixels.columns().end - 1);
+            (run, (self.centre(pixels.row() * width + nearest) - place).norm())
+        });
         let nearest = distances.min_by(|a, b| a.1.total_cmp(&b.1));
         nearest
             .filter(|(_, distance)| *distance <= reach)
-            .map(|(pixel, _)| self.labels[pixel] as usize - 1)
+            .map(|(run, _)| self.part_of[run] as usize)
     }
 
     /// How many columns and rows the picture has.
@@ -127,39 +133,41 @@ impl<'a> Parts<'a> {
 
     /// The part that covers a pixel of the picture, if any does.
     pub(super) fn covering(&self, column: usize, row: usize) -> Option<usize> {
-        let label = self.labels[(row + 1) * self.coverage.width + column + 1];
-        (label as usize).checked_sub(1)
+        let run = self.runs.at(column + 1, row + 1)?;
+        Some(self.part_of[run] as usize)
     }
 
     /// The closed loops around a part: one of positive area, and one of negative area for each hole.
     pub(super) fn loops(&self, part: Part) -> Vec<Vec<Point>> {
-        let label = part.label;
-        let [[left, top], [right, bottom]] = part.bounds;
-        let (columns, width) = (right - left + 1, self.coverage.width);
-        // Of the pixels in its box, row by row.
-        let mut visited = vec![false; columns * (bottom - top + 1)];
-        let place = |pixel: usize| (pixel / width - 1 - top) * columns + pixel % width - 1 - left;
+        let [[_, top], [_, bottom]] = part.bounds;
+        let width = self.coverage.width;
+        let first = self.runs.in_row(top + 1).start;
+        let own = first..self.runs.in_row(bottom + 1).end;
+        // Whether the line has passed a run's left end.
+        let mut visited = vec![false; own.len()];
         let mut loops = Vec::new();
-        let rows = (top + 1)..(bottom + 2);
-        for pixel in rows.flat_map(|row| (row * width + left + 1)..(row * width + right + 2)) {
-            if self.labels[pixel] == label && !self.inside(pixel - 1) && !visited[place(pixel)] {
-                // With the inside to its right on the page, the line runs up: out of the cell by the top side.
-                let start = (pixel - 1, 0);
-                let mut points = Vec::new();
-                let mut at = start;
-                loop {
-                    let (cell, side) = at;
-                    if side == 0 {
-                        visited[place(cell + 1)] = true;
-                    }
-                    points.push(self.crossing(cell, side));
-                    at = self.next(cell, side);
-                    if at == start {
-                        break;
-                    }
-                }
-                loops.push(points);
+        for run in own {
+            if self.part_of[run] != part.label || visited[run - first] {
+                continue;
             }
+            // With the inside to its right on the page, the line runs up: out of the cell by the top side.
+            let start = (self.runs.all()[run].pixels(width).start - 1, 0);
+            let mut points = Vec::new();
+            let mut at = start;
+            loop {
+                let (cell, side) = at;
+                if side == 0
+                    && let Some(passed) = self.runs.at((cell + 1) % width, cell / width)
+                {
+                    visited[passed - first] = true;
+                }
+                points.push(self.crossing(cell, side));
+                at = self.next(cell, side);
+                if at == start {
+                    break;
+                }
+            }
+            loops.push(points);
         }
         loops
     }
@@ -175,37 +183,7 @@ impl<'a> Parts<'a> {
     }
 
     fn corner(&self, cell: usize, corner: usize) -> usize {
-        let (x, y) = CORNERS[corner % 4];
-        cell + y * self.coverage.width + x
-    }
-
-    /// Calls `found` for every inside pixel joined to an inside `pixel`. Inside pixels never lie in the frame.
-    fn for_each_joined(&self, pixel: usize, mut found: impl FnMut(usize)) {
-        let width = self.coverage.width;
-        for other in [pixel - 1, pixel + 1, pixel - width, pixel + width] {
-            if self.inside(other) {
-                found(other);
-            }
-        }
-        // Each of the four cells around the pixel, and the pixel opposite to it there.
-        for (cell, opposite) in [
-            (pixel, pixel + width + 1),
-            (pixel - 1, pixel + width - 1),
-            (pixel - width, pixel - width + 1),
-            (pixel - width - 1, pixel - width - 1),
-        ] {
-            if self.inside(opposite) && self.saddle_joins(cell) {
-                found(opposite);
-            }
-        }
-    }
-
-    /// Whether the inside corners of a cell in which they face each other are joined.
-    fn saddle_joins(&self, cell: usize) -> bool {
-        let value = |corner| f64::from(self.coverage.values[self.corner(cell, corner)]) - f64::from(self.threshold);
-        // The bilinear interpolant at its saddle has the sign of this determinant over that of the alternating sum.
-        let determinant = value(0) * value(2) - value(1) * value(3);
-        determinant * (value(0) + value(2) - value(1) - value(3)) >= 0.0
+        corner_of(cell, corner, self.coverage.width)
     }
 
     /// Where the iso-line crosses a side of a cell.
@@ -232,11 +210,24 @@ impl<'a> Parts<'a> {
         let facing = self.inside(self.corner(cell, entry + 2));
         let beside = self.inside(self.corner(cell, entry + 3));
         let exit = match (facing, beside) {
-            (true, false) if !self.saddle_joins(cell) => entry + 3,
+            (true, false) if !saddle_joins(self.coverage, self.threshold, cell) => entry + 3,
             (true, _) => entry + 1,
             (false, true) => entry + 2,
             (false, false) => entry + 3,
         };
         (cell, exit % 4)
     }
+}
+
+fn corner_of(cell: usize, corner: usize, width: usize) -> usize {
+    let (x, y) = CORNERS[corner % 4];
+    cell + y * width + x
+}
+
+/// Whether the inside corners of a cell in which they face each other are joined.
+fn saddle_joins(coverage: &Coverage, threshold: f32, cell: usize) -> bool {
+    let value = |corner| f64::from(coverage.values[corner_of(cell, corner, coverage.width)]) - f64::from(threshold);
+    // The bilinear interpolant at its saddle has the sign of this determinant over that of the alternating sum.
+    let determinant = value(0) * value(2) - value(1) * value(3);
+    determinant * (value(0) + value(2) - value(1) - value(3)) >= 0.0
 }

@@ -5,7 +5,7 @@
 
 use super::enclosure::{flood, outer_border};
 use super::figure::is_line_drawing;
-use super::gaps::{Bridge, bridges};
+use super::gaps::{Bare, Bridge};
 use super::{BitmapOptions, InputNote};
 use crate::math::Point;
 
@@ -116,8 +116,10 @@ impl Enclosed {
 
 /// The inside of lines, gaps bridged.
 pub(super) fn enclose(drawn: &[bool], width: usize, ink: &Ink, options: &BitmapOptions) -> Enclosed {
+    let small = Reduced::of(drawn, width);
+    let bare = Bare::measure(&small.drawn, small.width);
     let with = |gap: f64| {
-        let found = find_bridges(drawn, width, ink, gap);
+        let found = small.bridges(&bare, ink, gap);
         let mut bridged = drawn.to_vec();
         for bridge in &found {
             for_each_pixel(bridge, ink.line_width as f32, width, drawn.len(), |at, share| {
@@ -127,13 +129,13 @@ pub(super) fn enclose(drawn: &[bool], width: usize, ink: &Ink, options: &BitmapO
         let outside = flood(&bridged, width, &outer_border(&bridged, width));
         (found, outside)
     };
-    let (bridged, outside) = with(options.gap);
+    let is_thin = is_line_drawing(ink.line_width, ink.diagonal, 1.0);
+    let ((bridged, outside), wide) =
+        rayon::join(|| with(options.gap), || is_thin.then(|| with(NAMED_GAP * options.gap)));
     let inside = outside.iter().filter(|outside| !**outside).count();
     let bare = (0..outside.len()).filter(|&at| !outside[at] && !drawn[at]).count();
     let (mut open, mut bare_share) = (None, bare as f64 / inside.max(1) as f64);
-    let is_thin = is_line_drawing(ink.line_width, ink.diagonal, 1.0);
-    if is_thin {
-        let (wide, outside) = with(NAMED_GAP * options.gap);
+    if let Some((wide, outside)) = wide {
         let more = outside.iter().filter(|outside| !**outside).count();
         if more as f64 > NAMED_GROWTH * inside as f64 {
             let widest = wide.into_iter().max_by(|a, b| a.length().total_cmp(&b.length()));
@@ -152,29 +154,48 @@ pub(super) fn enclose(drawn: &[bool], width: usize, ink: &Ink, options: &BitmapO
     }
 }
 
-/// The bridges over gaps of at most the fraction `gap` of the diagonal, in full-size pixels.
-fn find_bridges(drawn: &[bool], width: usize, ink: &Ink, gap: f64) -> Vec<Bridge> {
-    let height = drawn.len() / width.max(1);
-    let scale = width.max(height).div_ceil(GAP_SIDE).max(1);
-    let (small_width, small_height) = (width.div_ceil(scale), height.div_ceil(scale));
-    let mut small = vec![false; small_width * small_height];
-    for (at, _) in drawn.iter().enumerate().filter(|(_, drawn)| **drawn) {
-        small[at / width / scale * small_width + at % width / scale] = true;
+/// A mask made smaller by a whole number: what is drawn anywhere in a pixel's square is drawn.
+struct Reduced {
+    drawn: Vec<bool>,
+    width: usize,
+    /// Full-size pixels to one of it, along each side.
+    scale: usize,
+}
+
+impl Reduced {
+    fn of(drawn: &[bool], width: usize) -> Self {
+        let height = drawn.len() / width.max(1);
+        let scale = width.max(height).div_ceil(GAP_SIDE).max(1);
+        let (small_width, small_height) = (width.div_ceil(scale), height.div_ceil(scale));
+        let mut small = vec![false; small_width * small_height];
+        for (y, row) in drawn.chunks_exact(width.max(1)).enumerate() {
+            let small_row = &mut small[y / scale * small_width..][..small_width];
+            for (small, pixels) in small_row.iter_mut().zip(row.chunks(scale)) {
+                *small |= pixels.contains(&true);
+            }
+        }
+        Self {
+            drawn: small,
+            width: small_width,
+            scale,
+        }
     }
-    let factor = scale as f32;
-    let found = bridges(
-        &small,
-        small_width,
-        (gap * ink.diagonal) as f32 / factor,
-        ink.line_width as f32 / factor,
-        &outer_border(&small, small_width),
-    );
-    let full = |place: [f32; 2]| place.map(|c| (c + 0.5) * factor - 0.5);
-    let widened = |bridge: Bridge| Bridge {
-        from: full(bridge.from),
-        to: full(bridge.to),
-    };
-    found.into_iter().map(widened).collect()
+
+    /// The bridges over gaps of at most the fraction `gap` of the diagonal, in full-size pixels.
+    fn bridges(&self, bare: &Bare<'_>, ink: &Ink, gap: f64) -> Vec<Bridge> {
+        let factor = self.scale as f32;
+        let found = bare.bridges(
+            (gap * ink.diagonal) as f32 / factor,
+            ink.line_width as f32 / factor,
+            &outer_border(&self.drawn, self.width),
+        );
+        let full = |place: [f32; 2]| place.map(|c| (c + 0.5) * factor - 0.5);
+        let widened = |bridge: Bridge| Bridge {
+            from: full(bridge.from),
+            to: full(bridge.to),
+        };
+        found.into_iter().map(widened).collect()
+    }
 }
 
 /// Calls `found` for the pixels of a bridge that is drawn as a line, with how much of each it covers.

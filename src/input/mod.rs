@@ -26,6 +26,7 @@ mod obj;
 mod paper;
 mod path;
 mod picture;
+mod runs;
 mod sheet;
 mod svg;
 mod svg_art;

@@ -19,7 +19,7 @@ use image::RgbaImage;
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
-use super::enclosure::{border, depths};
+use super::enclosure::{Region, border, depths};
 
 /// The longer side of the picture in which the background is looked for, in pixels at most.
 const WORKING_SIDE: usize = 1024;
@@ -51,6 +51,8 @@ const PLACE_SIDE: usize = 32;
 const UNEVEN: f32 = 3.0;
 /// How often the field is made better.
 const ROUNDS: usize = 3;
+/// Columns that are averaged together: a few lines of the processor's cache.
+const COLUMNS_AT_ONCE: usize = 16;
 /// From a median absolute residual to the standard deviation of Gaussian noise.
 const DEVIATION_OF_MEDIAN: f32 = 1.4826;
 
@@ -69,6 +71,8 @@ pub(super) struct Paper {
     /// Rows of the field.
     height: usize,
     field: Vec<Colour>,
+    /// For each full-size column the pixel of the field at or left of it, and how far it is towards the next.
+    columns: Vec<(usize, f32)>,
     /// The field as it is along the border, continued: it knows nothing of what is seen farther inside.
     polynomial: Polynomial,
     /// How far the background of whole places is from that.
@@ -93,40 +97,50 @@ impl Small {
         let (full_width, full_height) = (image.width() as usize, image.height() as usize);
         let scale = full_width.max(full_height).div_ceil(WORKING_SIDE).max(1);
         let (width, height) = (full_width.div_ceil(scale), full_height.div_ceil(scale));
-        let raw = image.as_raw();
-        let rows: Vec<Vec<(Colour, bool)>> = (0..height)
-            .into_par_iter()
-            .map(|row| {
-                let row_of = |column: usize| {
-                    let (mut sum, mut count, mut inside) = ([0_u32; 3], 0_u32, true);
-                    for y in row * scale..((row + 1) * scale).min(full_height) {
-                        for x in column * scale..((column + 1) * scale).min(full_width) {
-                            let at = y * full_width + x;
-                            for (total, channel) in sum.iter_mut().zip(&raw[4 * at..4 * at + 3]) {
+        let mut pixels = vec![Colour::default(); width * height];
+        let mut inside = vec![true; width * height];
+        pixels
+            .par_chunks_mut(width.max(1))
+            .zip(inside.par_chunks_mut(width.max(1)))
+            .enumerate()
+            .for_each(|(row, (pixels, inside))| {
+                let mut sums = vec![[0_u32; 3]; width];
+                let rows = row * scale..((row + 1) * scale).min(full_height);
+                let row_count = rows.len();
+                for y in rows {
+                    let full = y * full_width..(y + 1) * full_width;
+                    let raw = &image.as_raw()[4 * full.start..4 * full.end];
+                    for (sum, raw) in sums.iter_mut().zip(raw.chunks(4 * scale)) {
+                        for pixel in raw.chunks_exact(4) {
+                            for (total, channel) in sum.iter_mut().zip(pixel) {
                                 *total += u32::from(*channel);
                             }
-                            count += 1;
-                            inside &= region.is_none_or(|region| region[at]);
                         }
                     }
-                    (sum.map(|total| total as f32 * STEP / count as f32), inside)
-                };
-                (0..width).map(row_of).collect()
-            })
-            .collect();
-        let (pixels, region) = rows.into_iter().flatten().unzip();
+                    if let Some(region) = region {
+                        for (inside, region) in inside.iter_mut().zip(region[full].chunks(scale)) {
+                            *inside &= !region.contains(&false);
+                        }
+                    }
+                }
+                for (column, (pixel, sum)) in pixels.iter_mut().zip(sums).enumerate() {
+                    let columns = scale.min(full_width - column * scale);
+                    *pixel = sum.map(|total| total as f32 * STEP / (columns * row_count) as f32);
+                }
+            });
         Self {
             scale,
             width,
             height,
             pixels,
-            region,
+            region: inside,
         }
     }
 
     /// The pixels of the region that are near its border, at most [`MOST_SAMPLES`].
     fn band(&self) -> Vec<usize> {
-        let reach = ((BAND * self.width.min(self.height) as f64).round() as usize).max(1);
+        // Casts saturate.
+        let reach = ((BAND * self.width.min(self.height) as f64).round() as u16).max(1);
         let depths = depths(&self.region, self.width, reach);
         let near: Vec<usize> = (0..depths.len())
             .filter(|&k| (1..=reach).contains(&depths[k]))
@@ -146,6 +160,20 @@ fn monomials(width: usize, height: usize, pixel: usize) -> [f64; 6] {
     let x = 2.0 * (pixel % width) as f64 / longer - 1.0;
     let y = 2.0 * (pixel / width) as f64 / longer - 1.0;
     [1.0, x, y, x * x, x * y, y * y]
+}
+
+/// The pixel of a field, of `count` along this side, at or before a full-size pixel, and how far that is towards the next.
+fn between(full: usize, scale: usize, count: usize) -> (usize, f32) {
+    if scale == 1 {
+        return (full, 0.0);
+    }
+    let place = ((full as f32 + 0.5) / scale as f32 - 0.5).clamp(0.0, (count - 1) as f32);
+    let low = (place as usize).min(count.saturating_sub(2));
+    (low, place - low as f32)
+}
+
+fn mixed(a: Colour, b: Colour, share: f32) -> Colour {
+    std::array::from_fn(|k| (1.0 - share) * a[k] + share * b[k])
 }
 
 fn polynomial_at(polynomial: &Polynomial, monomials: [f64; 6]) -> Colour {
@@ -201,6 +229,9 @@ impl Paper {
             width: small.width,
             height: small.height,
             field: follow(&small, &polynomial, deviation),
+            columns: (0..image.width() as usize)
+                .map(|x| between(x, small.scale, small.width))
+                .collect(),
             polynomial,
             unevenness: unevenness(&small, &polynomial, &band, REACH * deviation),
             noise: deviation,
@@ -211,33 +242,39 @@ impl Paper {
 
     /// The background's colour at a full-size pixel.
     pub(super) fn at(&self, x: usize, y: usize) -> Colour {
-        if self.scale == 1 {
-            return self.field[y * self.width + x];
-        }
-        let along = |full: usize, count: usize| {
-            let place = ((full as f32 + 0.5) / self.scale as f32 - 0.5).clamp(0.0, (count - 1) as f32);
-            let low = (place as usize).min(count.saturating_sub(2));
-            (low, (low + 1).min(count - 1), place - low as f32)
+        let (left, u) = self.columns[x];
+        let (top, v) = between(y, self.scale, self.height);
+        let field = |x: usize| {
+            let x = x.min(self.width - 1);
+            let below = (top + 1).min(self.height - 1);
+            mixed(self.field[top * self.width + x], self.field[below * self.width + x], v)
         };
-        let (left, right, u) = along(x, self.width);
-        let (top, bottom, v) = along(y, self.height);
-        let field = |x: usize, y: usize| self.field[y * self.width + x];
-        let (a, b, c, d) = (
-            field(left, top),
-            field(right, top),
-            field(left, bottom),
-            field(right, bottom),
+        mixed(field(left), field(left + 1), u)
+    }
+
+    /// The background's colours along a full-size row, in `row`; `field_row` is memory for them.
+    fn read_row(&self, y: usize, field_row: &mut Vec<Colour>, row: &mut Vec<Colour>) {
+        let (top, v) = between(y, self.scale, self.height);
+        let below = (top + 1).min(self.height - 1);
+        let of_field = |row: usize| &self.field[row * self.width..(row + 1) * self.width];
+        field_row.clear();
+        field_row.extend(of_field(top).iter().zip(of_field(below)).map(|(a, b)| mixed(*a, *b, v)));
+        field_row.extend(field_row.last().copied());
+        row.clear();
+        row.extend(
+            self.columns
+                .iter()
+                .map(|&(left, u)| mixed(field_row[left], field_row[left + 1], u)),
         );
-        std::array::from_fn(|k| (1.0 - v) * ((1.0 - u) * a[k] + u * b[k]) + v * ((1.0 - u) * c[k] + u * d[k]))
     }
 
     /// Whether the median colour of a region of full-size pixels is that of the background along the border. Grain cancels out in large
     /// regions, so that whites are told apart that single pixels do not tell; the soft rim of the region does not count.
-    pub(super) fn is_seen_in(&self, image: &RgbaImage, region: &[u32]) -> bool {
+    pub(super) fn is_seen_in(&self, image: &RgbaImage, region: &Region) -> bool {
         let width = image.width() as usize;
         let mut residuals: [Vec<f32>; 3] = Default::default();
-        for &at in region.iter().step_by(region.len().div_ceil(MOST_SAMPLES).max(1)) {
-            let at = at as usize;
+        let stride = region.area.div_ceil(MOST_SAMPLES).max(1);
+        for at in region.pixels(width).step_by(stride) {
             let place = (at / width / self.scale) * self.width + at % width / self.scale;
             let expected = polynomial_at(&self.polynomial, monomials(self.width, self.height, place));
             let pixel = &image.as_raw()[4 * at..];
@@ -263,13 +300,12 @@ impl Paper {
             .par_chunks_mut(width.max(1))
             .zip(image.as_raw().par_chunks(4 * width.max(1)))
             .enumerate()
-            .for_each(|(y, (row, pixels))| {
-                for (x, (contrast, pixel)) in row.iter_mut().zip(pixels.chunks_exact(4)).enumerate() {
-                    let paper = self.at(x, y);
-                    let far = (0..3)
-                        .map(|k| (f32::from(pixel[k]) - 255.0 * paper[k]).abs())
-                        .fold(0.0, f32::max);
-                    *contrast = far.round() as u8;
+            .for_each_init(Default::default, |(field_row, paper), (y, (row, pixels))| {
+                self.read_row(y, field_row, paper);
+                for ((contrast, pixel), paper) in row.iter_mut().zip(pixels.chunks_exact(4)).zip(paper.iter()) {
+                    let far = |k: usize| (f32::from(pixel[k]) - 255.0 * paper[k]).abs();
+                    // Rounded, since casts cut off.
+                    *contrast = (far(0).max(far(1)).max(far(2)) + 0.5) as u8;
                 }
             });
         contrast
@@ -404,20 +440,42 @@ fn blur(values: &mut [[f32; 4]], width: usize, radius: usize) {
     values
         .par_chunks_mut(width.max(1))
         .for_each(|row| running_mean(row, radius, share));
-    let before = values.to_vec();
-    let columns: Vec<Vec<[f32; 4]>> = (0..width)
+    let blocks: Vec<Vec<[f32; 4]>> = (0..width.div_ceil(COLUMNS_AT_ONCE))
         .into_par_iter()
-        .map(|x| {
-            let mut column: Vec<[f32; 4]> = (0..height).map(|y| before[y * width + x]).collect();
-            running_mean(&mut column, radius, share);
-            column
+        .map(|block| {
+            let first = block * COLUMNS_AT_ONCE;
+            let columns = first..(first + COLUMNS_AT_ONCE).min(width);
+            let row_of = |y: usize| &values[y * width + columns.start..y * width + columns.end];
+            let mut sums = vec![[0.0_f64; 4]; columns.len()];
+            let mut means = Vec::with_capacity(columns.len() * height);
+            for y in 0..radius.min(height) {
+                add(&mut sums, row_of(y), 1.0);
+            }
+            for y in 0..height {
+                if y + radius < height {
+                    add(&mut sums, row_of(y + radius), 1.0);
+                }
+                if y > radius {
+                    add(&mut sums, row_of(y - radius - 1), -1.0);
+                }
+                means.extend(sums.iter().map(|sum| sum.map(|total| total as f32 * share)));
+            }
+            means
         })
         .collect();
     values.par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
-        for (value, column) in row.iter_mut().zip(&columns) {
-            *value = column[y];
+        for (row, block) in row.chunks_mut(COLUMNS_AT_ONCE).zip(&blocks) {
+            row.copy_from_slice(&block[y * row.len()..(y + 1) * row.len()]);
         }
     });
+}
+
+fn add(sums: &mut [[f64; 4]], row: &[[f32; 4]], sign: f64) {
+    for (sum, value) in sums.iter_mut().zip(row) {
+        for (total, value) in sum.iter_mut().zip(value) {
+            *total += sign * f64::from(*value);
+        }
+    }
 }
 
 fn running_mean(line: &mut [[f32; 4]], radius: usize, share: f32) {

@@ -40,7 +40,7 @@ pub fn find_cells(bytes: &[u8]) -> Result<Option<[usize; 2]>, InputError> {
     let options = BitmapOptions::default();
     let found = find(&decoded.image, decoded.fidelity, &options)?;
     let threshold = options.threshold as f32;
-    let coverage = Coverage::framed(&found.coverage, decoded.image.width() as usize, threshold);
+    let coverage = Coverage::framed(found.coverage, decoded.image.width() as usize, threshold);
     let parts = Parts::of(&coverage, threshold);
     Ok(grid_of(&parts.parts, parts.size()))
 }
@@ -114,7 +114,7 @@ mod tests {
     /// A part that covers a box: left, top, width, height.
     fn part([left, top, width, height]: [usize; 4]) -> Part {
         Part {
-            label: 1,
+            label: 0,
             area: (width * height) as f64,
             centroid: Point::zeros(),
             bounds: [[left, top], [left + width - 1, top + height - 1]],
