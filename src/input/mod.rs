@@ -30,6 +30,7 @@ mod runs;
 mod sheet;
 mod svg;
 mod svg_art;
+mod svg_effects;
 mod svg_numbers;
 mod svg_silhouette;
 mod svg_text;

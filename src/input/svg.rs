@@ -23,6 +23,7 @@ use usvg::roxmltree;
 
 use super::art_parts::DividedArt;
 use super::svg_art::read_art;
+use super::svg_effects::are_cut;
 use super::svg_numbers::check_numbers;
 use super::svg_silhouette::{Pieces, affine, silhouette};
 use super::{Art, Canvas, Drawing, HoleRule, InputError, InputNote, LoosePart, PartOptions, Picture, svg_text};
@@ -265,6 +266,10 @@ impl<'a> Source<'a> {
             None => point::bounding_box(outline.outer().points()),
         };
         let picture = rasterise(&drawn, to_user, bounds, options.pixels_per_unit)?;
+        let outlines: Vec<&Outline> = pieces.outlines.iter().map(|(_, outline)| outline).collect();
+        if are_cut(&drawn, to_user, &outlines)? {
+            notes.push(InputNote::SoftEdgeCut);
+        }
         let art = read_art(&drawn, to_user, &mut notes)
             .map_err(|reason| notes.push(InputNote::NotCurves { reason }))
             .ok();
@@ -459,7 +464,7 @@ fn divided(
 }
 
 /// The pixels of `nodes` between two corners.
-fn rasterise(
+pub(super) fn rasterise(
     nodes: &[&usvg::Node],
     to_user: Affine,
     bounds: Option<(Point, Point)>,

@@ -325,3 +325,18 @@ fn variables_have_their_values() {
         }]
     );
 }
+
+#[test]
+fn a_soft_shadow_is_said_to_be_cut_off_and_a_sharp_edge_is_not() {
+    let with = |filter: &str| {
+        let text = svg(&format!(
+            r##"<filter id="f" x="-1" y="-1" width="3" height="3">{filter}</filter>
+                <g filter="url(#f)"><circle cx="50" cy="50" r="20"/></g>"##
+        ));
+        read(&text).notes.contains(&InputNote::SoftEdgeCut)
+    };
+    assert!(with(r#"<feDropShadow dx="5" dy="9" stdDeviation="3"/>"#));
+    assert!(with(r#"<feGaussianBlur stdDeviation="6"/>"#));
+    assert!(!with(r#"<feColorMatrix type="saturate" values="0.5"/>"#));
+    assert!(!with(r#"<feGaussianBlur stdDeviation="0.2"/>"#));
+}
