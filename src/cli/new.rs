@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use inbetween::export::PendingFile;
 use inbetween::input::{BitmapOptions, InputError, Picture, PictureChoice, find_cells, frame_count, read_bitmap};
-use inbetween::pipeline::Build;
+use inbetween::pipeline::{Build, PipelineError};
 use inbetween::scene::{NewPose, Scene, scene_text};
 use inbetween::weights::arrange;
 
@@ -19,8 +19,8 @@ const SUFFIXES: [&str; 10] = ["png", "apng", "jpg", "jpeg", "webp", "gif", "bmp"
 ///
 /// Writes DIR/scene.toml with one pose a drawing, named after its file. The drawings are mapped onto one another to lay the poses
 /// out: those that are alike come near one another. They are taken in the order of the numbers in their names; an animated GIF, APNG or
-/// WebP gives a pose a frame, a sheet one a cell (--cells; where one drawing is given with a figure in each of four or more equal cells, they are found). If they cannot be mapped, the poses lie evenly on a circle and
-/// a note says why. What was taken for the figure is said for every drawing; one that cannot be used is refused. Drawings that are not in
+/// WebP gives a pose a frame, a sheet one a cell (--cells; where one drawing is given with a figure in each of four or more equal cells, they are found). If they cannot be mapped, the scene is written with
+/// its poses evenly on a circle, so that it can be mended there, and the command fails as a render would. What was taken for the figure is said for every drawing; one that cannot be used is refused. Drawings that are not in
 /// DIR are copied into it, so that the folder is complete. An existing scene file is only overwritten with --force.
 #[derive(clap::Args)]
 #[command(
@@ -78,7 +78,14 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
             let _ = std::fs::remove_dir(&arguments.dir);
         }
     }
-    written?;
+    if let Some(refusal) = written? {
+        let file = scene_file.display();
+        return Err(anyhow::Error::from(refusal)
+            .context(format!(
+                "wrote {file}, but its drawings cannot be mapped; mend the scene, or the drawings, and repeat this with --force"
+            ))
+            .into());
+    }
     verbosity.note(&format!(
         "wrote {} with {} poses; next: inbetween render {0} -o {}.gif",
         scene_file.display(),
@@ -261,30 +268,32 @@ fn pictures_of(path: &Path, cells: Option<Grid>, notes: &mut Vec<String>) -> any
     Ok(found)
 }
 
-fn write(copies: &[Copy], scene_file: &Path, poses: &mut [NewPose], verbosity: Verbosity) -> anyhow::Result<()> {
+/// Writes the drawings and the scene; returns why they cannot be mapped, if they cannot.
+fn write(
+    copies: &[Copy],
+    scene_file: &Path,
+    poses: &mut [NewPose],
+    verbosity: Verbosity,
+) -> anyhow::Result<Option<PipelineError>> {
     for copy in copies {
         PendingFile::write_whole(&copy.target, &copy.bytes)
             .with_context(|| format!("cannot copy the drawing {}", copy.original.display()))?;
     }
     let scene = Scene::parse(&scene_text(poses), scene_file)?;
-    let places = match Build::new(&scene.spec()?) {
+    let (places, refusal) = match Build::new(&scene.spec()?) {
         Ok(build) => {
             for note in build.notes() {
                 verbosity.note(&format!("note: {note}"));
             }
-            build.places().to_vec()
+            (build.places().to_vec(), None)
         }
-        Err(error) => {
-            verbosity.note(&format!(
-                "note: the poses are laid out evenly on a circle, because the drawings could not be mapped: {error}"
-            ));
-            even_circle(poses.len())
-        }
+        Err(refusal) => (even_circle(poses.len()), Some(refusal)),
     };
     for (pose, place) in poses.iter_mut().zip(places) {
         pose.at = place.first_chunk().copied();
     }
-    Ok(PendingFile::write_whole(scene_file, scene_text(poses).as_bytes())?)
+    PendingFile::write_whole(scene_file, scene_text(poses).as_bytes())?;
+    Ok(refusal)
 }
 
 /// A piece of a file's name by which names are sorted: numbers as numbers, so that walk2 comes before walk10.
