@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use inbetween::export::PendingFile;
 use inbetween::math::Point;
+use inbetween::pipeline::Note;
 use inbetween::scene::Scene;
 use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value};
 
@@ -75,7 +76,7 @@ fn added(
     document: &mut DocumentMut,
     arguments: &Arguments,
     source: &str,
-) -> anyhow::Result<(String, Option<Vec<f64>>, Vec<String>)> {
+) -> anyhow::Result<(String, Option<Vec<f64>>, Vec<Note>)> {
     let file = &arguments.scene;
     let stem = arguments
         .drawing

@@ -28,7 +28,7 @@ pub(super) fn scene(session: &Session) -> Value {
         "file": session.file().display().to_string(),
         "revision": shown.revisions.scene,
         "camera": camera,
-        "notes": bench.map_or(&[][..], |bench| bench.notes()),
+        "notes": bench.map_or_else(Vec::new, |bench| bench.notes().iter().map(ToString::to_string).collect()),
         "problems": shown.problems,
     });
     if let Some(animation) = answer.get_mut("animation").and_then(Value::as_object_mut) {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::PipelineError;
 use super::drawings::sharpen;
 use super::layer::{LayerShape, Part, PosedLayer};
+use super::note::{Note, NoteKind};
 use super::spec::{ArtChoice, TextureSpec};
 use crate::input::Drawing;
 use crate::pose::TextureMesh;
@@ -47,7 +48,7 @@ impl LayerArt {
         drawings: &[Arc<Drawing>],
         mesh: impl FnOnce() -> Option<Arc<TextureMesh>>,
         view: View,
-        notes: &mut Vec<String>,
+        notes: &mut Vec<Note>,
     ) -> Result<Self, PipelineError> {
         let View { camera, samples } = view;
         let drawn_on = part.layer.drawn_poses();
@@ -58,7 +59,8 @@ impl LayerArt {
         let style = match curves(texture.art, &drawings, &drawn_on) {
             Some(curves) => {
                 let (carried, remarks) = CarriedDrawing::new(mapping, curves, drawing_of.clone(), silhouette, camera);
-                notes.extend(remarks.iter().map(|note| part.remark(note)));
+                let remark = |cross_fade| part.named(Note::on_all(NoteKind::CrossFaded(cross_fade)));
+                notes.extend(remarks.into_iter().map(remark));
                 Style::Curves(Box::new(carried.with_blending(blending)))
             }
             None => {

@@ -27,6 +27,7 @@ use super::figure::{self, Figure, Posed};
 use super::layer::{self, LayerShape, Part, PosedLayer};
 use super::layout::placed;
 use super::mapping::map_drawings_again;
+use super::note::Note;
 use super::spec::{
     ArtChoice, CameraRule, CharacterSpec, DrawnPose, LandmarkSpec, LayerSpec, MeshOptions, PathSpec, Places, PoseSpec,
     Register, WeightOptions,
@@ -53,7 +54,7 @@ pub struct Build {
     /// What the weights are made of; `None` for weights that were given.
     weights_input: Option<WeightsInput>,
     places: Vec<Vec<f64>>,
-    notes: Vec<String>,
+    notes: Vec<Note>,
 }
 
 /// What a layer is made of.
@@ -216,9 +217,9 @@ impl Build {
         landmarks::as_drawn(&self.spec.layers[layer], drawing, place)
     }
 
-    /// What the artist should know, one line a remark.
+    /// What the artist should know.
     #[must_use]
-    pub fn notes(&self) -> &[String] {
+    pub fn notes(&self) -> &[Note] {
         &self.notes
     }
 
@@ -340,7 +341,7 @@ impl Build {
 fn built(
     part: &Part<'_>,
     was: Option<(&LayerSpec, &LayerBuild, &LayerShape)>,
-) -> Result<(LayerBuild, LayerShape, Vec<String>), PipelineError> {
+) -> Result<(LayerBuild, LayerShape, Vec<Note>), PipelineError> {
     let input = MappingInput::of(part.layer);
     if let Some((_, layer, shape)) = was.filter(|(_, layer, _)| *layer.input == input) {
         let mut notes = layer.report.notes.clone();
@@ -362,9 +363,7 @@ fn built(
     let boundaries_before = same_drawings.map(|(_, layer, _)| &layer.boundaries);
     let mapped = map_drawings_again(part.layer, &drawings, boundaries_before);
     let (mapping, mut report, boundaries) = mapped.map_err(|error| part.refusal(error))?;
-    for note in &mut report.notes {
-        *note = part.remark(note);
-    }
+    report.notes = report.notes.into_iter().map(|note| part.named(note)).collect();
     let mut notes = report.notes.clone();
     let shape = part.shape(mapping, &mut notes)?;
     let layer = LayerBuild {

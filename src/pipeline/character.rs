@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::art::{LayerArt, View};
 use super::figure::{Figure, Posed};
 use super::layer::{self, LayerShape};
+use super::note::Note;
 use super::{Build, PipelineError, weighting};
 use crate::animation::{Animation, Background};
 use crate::pipeline::spec::CharacterSpec;
@@ -27,7 +28,7 @@ pub struct Character {
     camera: Camera,
     /// Along a pixel's side.
     samples: usize,
-    notes: Vec<String>,
+    notes: Vec<Note>,
     animation: Animation,
     sampling: Sampling,
 }
@@ -122,9 +123,9 @@ impl Character {
         &self.figure.layers
     }
 
-    /// What the artist should know, one line a remark.
+    /// What the artist should know.
     #[must_use]
-    pub fn notes(&self) -> &[String] {
+    pub fn notes(&self) -> &[Note] {
         &self.notes
     }
 

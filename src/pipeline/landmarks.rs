@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::PipelineError;
 use super::inside::Obstacles;
 use super::landmark_path;
+use super::note::{Note, NoteKind};
 use super::sides::Sides;
 use super::spec::LayerSpec;
 use crate::compatible::{CompatibleMesh, FeaturePath, Features, PathEnd};
@@ -190,7 +191,7 @@ impl Landmarks {
         polygons: &[Outline],
         anchors: &[Vec<Point>],
         tolerance: f64,
-    ) -> Result<(Features, Vec<String>), PipelineError> {
+    ) -> Result<(Features, Vec<Note>), PipelineError> {
         let mut features = Features::default();
         let mut notes = Vec::new();
         let mut obstacles: Vec<Obstacles> = polygons.iter().map(Obstacles::new).collect();
@@ -241,9 +242,10 @@ impl Landmarks {
                 sides.add_line(polygons, [from, to], &points);
             }
             for (pose, _) in path.at.iter().enumerate().filter(|(_, points)| points.is_none()) {
-                notes.push(format!(
-                    "landmark '{}' has no line in pose '{}': it follows the outline there; give it one if that is wrong",
-                    path.name, layer.poses[pose].name
+                let landmark = path.name.clone();
+                notes.push(Note::on_pose(
+                    &layer.poses[pose].name,
+                    NoteKind::LineMissing { landmark },
                 ));
             }
             paths[number] = Some(FeaturePath { ends, points });
@@ -270,11 +272,11 @@ impl Landmarks {
                     .and_then(|place| obstacles[pose].nearest_free(&polygons[pose], place, is_allowed))
                     .ok_or_else(|| lacking(pose, &landmark.name))?;
                 obstacles[pose].add_point(place);
-                let as_written = as_drawn(layer, pose, place);
-                notes.push(format!(
-                    "landmark '{}' has no place in pose '{}': it was put at ({:.1}, {:.1}); give it one if that is wrong",
-                    landmark.name, layer.poses[pose].name, as_written.x, as_written.y
-                ));
+                let kind = NoteKind::LandmarkPlaced {
+                    landmark: landmark.name.clone(),
+                    at: as_drawn(layer, pose, place),
+                };
+                notes.push(Note::on_pose(&layer.poses[pose].name, kind));
                 places.push(place);
             }
             features.points.push(places);

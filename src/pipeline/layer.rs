@@ -5,6 +5,7 @@
 //! Poses that lack a layer fade it out, by what their drawings count in the frame.
 
 use super::blending::blend_options;
+use super::note::{Note, NoteKind};
 use super::spec::{CharacterSpec, LandmarkSpec, LayerRole, LayerSpec};
 use super::{PipelineError, ShapePoint};
 use crate::blend::{BlendOptions, BlendReport, RigidBlend};
@@ -35,10 +36,11 @@ pub(super) fn parts(spec: &CharacterSpec) -> Vec<Part<'_>> {
 }
 
 impl Part<'_> {
-    pub(super) fn remark(&self, note: &str) -> String {
-        match self.named {
-            Some(name) => format!("layer '{name}': {note}"),
-            None => note.to_owned(),
+    /// A remark on this layer.
+    pub(super) fn named(&self, note: Note) -> Note {
+        Note {
+            layer: self.named.map(str::to_owned),
+            ..note
         }
     }
 
@@ -53,7 +55,7 @@ impl Part<'_> {
     }
 
     /// The layer's shape, not yet hung on another one.
-    pub(super) fn shape(&self, mapping: Mapping, notes: &mut Vec<String>) -> Result<LayerShape, PipelineError> {
+    pub(super) fn shape(&self, mapping: Mapping, notes: &mut Vec<Note>) -> Result<LayerShape, PipelineError> {
         let options = blend_options(self.layer, &mapping);
         let (blend, silhouette) = rayon::join(
             || RigidBlend::new(&mapping.poses, &options),
@@ -75,11 +77,7 @@ impl Part<'_> {
     }
 
     /// The layer's shape, not yet hung on another one, from `before`, which has the same mapping.
-    pub(super) fn shape_again(
-        &self,
-        before: &LayerShape,
-        notes: &mut Vec<String>,
-    ) -> Result<LayerShape, PipelineError> {
+    pub(super) fn shape_again(&self, before: &LayerShape, notes: &mut Vec<Note>) -> Result<LayerShape, PipelineError> {
         let mut shape = LayerShape {
             tie: None,
             ..before.clone()
@@ -94,12 +92,9 @@ impl Part<'_> {
         Ok(shape)
     }
 
-    fn note_turns(&self, blend: &RigidBlend, notes: &mut Vec<String>) {
+    fn note_turns(&self, blend: &RigidBlend, notes: &mut Vec<Note>) {
         if blend.turns_are_ambiguous() && self.layer.role == LayerRole::Body {
-            notes.push(self.remark(
-                "some poses are turned by half a turn against one another, so either way round is as good; \
-                 set `turns` on a pose to choose",
-            ));
+            notes.push(self.named(Note::on_all(NoteKind::TurnsAmbiguous)));
         }
     }
 }

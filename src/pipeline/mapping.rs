@@ -6,13 +6,14 @@ use super::boundaries::Boundaries;
 use super::drawings::used_drawings;
 use super::drawn::is_found;
 use super::landmarks::{self, Landmarks};
+use super::note::{Note, NoteKind};
 use super::spec::{LayerRole, LayerSpec};
 use super::triangulation::{self, Labels};
 use super::{MappingReport, PipelineError, Stage, deformed};
 use crate::compatible::{
     CompatibleMesh, Effort, Guide, Simplification, Simplified, TriangulateReport, refine_guided, triangulate_features,
 };
-use crate::input::Drawing;
+use crate::input::{Drawing, InputNote};
 use crate::math::Point;
 use crate::outline::{ArcLength, Outline};
 use crate::pose::{Mapping, Matching, MeshQuality, PoseSet};
@@ -79,7 +80,8 @@ fn map_drawn(
     let names = layer.names();
     let mut notes = Vec::new();
     for (name, drawing) in names.iter().zip(drawings) {
-        notes.extend(drawing.notes.iter().map(|note| format!("pose '{name}': {note}")));
+        let of_drawing = |note: &InputNote| Note::on_pose(name, NoteKind::Drawing(note.clone()));
+        notes.extend(drawing.notes.iter().map(of_drawing));
     }
     if layer.role == LayerRole::Body {
         notes.extend(note_on_units(&names, drawings));
@@ -111,9 +113,7 @@ fn map_drawn(
     for (pose, name) in names.iter().enumerate() {
         // A loose part cannot be reflected by itself.
         if matched.outer.poses[pose].looks_mirrored && layer.role == LayerRole::Body {
-            notes.push(format!(
-                "pose '{name}' would match better reflected; set `mirror = true` if it faces the other way"
-            ));
+            notes.push(Note::on_pose(name, NoteKind::LooksReflected));
         }
     }
     let explained: Vec<Option<Explained>> = (0..names.len())
@@ -187,39 +187,26 @@ fn map_drawn(
 }
 
 /// Says which poses show something else than the reference, and where a landmark would say most.
-fn notes_on_strangers(names: &[String], reference: usize, explained: &[Option<Explained>]) -> Vec<String> {
+fn notes_on_strangers(names: &[String], reference: usize, explained: &[Option<Explained>]) -> Vec<Note> {
     (names.iter().zip(explained))
         .filter_map(|(name, explained)| {
             let explained = explained.filter(|explained| !is_found(explained))?;
-            let Explained { share, least: [from, to] } = explained;
-            let reference = &names[reference];
-            Some(format!(
-                "only {:.0} % of what pose '{reference}' shows is found on pose '{name}', least of all near ({:.0}, {:.0}), so that \
-                 their forms alone are matched; if it is the same character, a landmark there, on '{reference}' near ({:.0}, {:.0}), \
-                 would help most",
-                100.0 * share,
-                to.x,
-                to.y,
-                from.x,
-                from.y
-            ))
+            let reference = names[reference].clone();
+            Some(Note::on_pose(name, NoteKind::Unlike { reference, explained }))
         })
         .collect()
 }
 
 /// Says that drawings are in different units, as one in millimetres among others in pixels is.
-fn note_on_units(names: &[String], drawings: &[Arc<Drawing>]) -> Option<String> {
+fn note_on_units(names: &[String], drawings: &[Arc<Drawing>]) -> Option<Note> {
     let unit = |pose: &usize| drawings[*pose].unit_px;
     let by_unit = |a: &usize, b: &usize| unit(a).total_cmp(&unit(b));
     let smallest = (0..drawings.len()).min_by(by_unit)?;
     let largest = (0..drawings.len()).max_by(by_unit)?;
     let times = unit(&largest) / unit(&smallest);
     (times > 1.0 + LIKE_UNITS).then(|| {
-        format!(
-            "a unit of pose '{}' is {times:.2} times as large on the page as one of pose '{}', and coordinates are taken as they are; save \
-             both with the same units and viewBox if one looks too small",
-            names[largest], names[smallest]
-        )
+        let smallest = names[smallest].clone();
+        Note::on_pose(&names[largest], NoteKind::UnitsDiffer { smallest, times })
     })
 }
 
@@ -253,7 +240,7 @@ struct Bare {
     mesh: CompatibleMesh,
     report: TriangulateReport,
     /// What was placed.
-    notes: Vec<String>,
+    notes: Vec<Note>,
 }
 
 /// The triangulation of the polygons with everything inside them.

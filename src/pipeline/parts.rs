@@ -14,6 +14,7 @@
 use std::sync::Arc;
 
 use super::drawings::{mirror_axis, reflected};
+use super::note::{LoosePartName, Note, NoteKind};
 use super::spec::{
     CharacterSpec, DeformedCopy, DrawnPose, Facing, LayerRole, LayerSpec, PoseShape, PoseSpec, ShrunkCopy, SvgSource,
 };
@@ -22,9 +23,6 @@ use crate::input::{Drawing, InputNote, LoosePart, PartOptions, PartRule, SvgOpti
 use crate::math::{Point, point};
 use crate::outline::Outline;
 use crate::parts::{PartGroups, PartShape, group, nearest_part, origin};
-
-/// The most layers that a note names.
-const MOST_NAMED: usize = 6;
 
 /// The layers that a layer falls into.
 #[derive(Debug, Clone)]
@@ -40,7 +38,7 @@ pub struct LayerParts {
     /// the pose is no drawing.
     pub outlines: Vec<Vec<Outline>>,
     /// What the layers are, in a line, if there are several.
-    pub note: Option<String>,
+    pub note: Option<Note>,
 }
 
 impl CharacterSpec {
@@ -266,31 +264,20 @@ impl<'a> Pieces<'a> {
         });
         let lacking = |thing: usize| {
             let poses = self.poses.iter().zip(&self.groups.things[thing]);
-            let lacking: Vec<String> = poses
-                .filter(|(_, part)| part.is_none())
-                .map(|(pose, _)| format!("'{}'", layer.poses[*pose].name))
-                .collect();
-            match lacking.as_slice() {
-                [] => String::new(),
-                [one] => format!(" (not in {one})"),
-                several => format!(" (not in {} poses)", several.len()),
-            }
+            let lacking = poses.filter(|(_, part)| part.is_none());
+            lacking.map(|(pose, _)| layer.poses[*pose].name.clone()).collect()
         };
-        let mut listed: Vec<String> = (order.iter().take(MOST_NAMED))
-            .map(|&thing| format!("'{}'{}", names[thing], lacking(thing)))
-            .collect();
-        if order.len() > MOST_NAMED {
-            listed.push(format!("{} more", order.len() - MOST_NAMED));
-        }
+        let named = |&thing: &usize| LoosePartName {
+            name: names[thing].clone(),
+            lacking: lacking(thing),
+        };
         LayerParts {
             largest: order.iter().position(|&thing| thing == 0).unwrap_or(0),
             draw_orders: self.draw_orders(layer, &order),
             outlines: outlines.collect(),
-            note: Some(format!(
-                "the drawings have {} loose parts, each a layer of its own, from back to front: {}",
-                order.len(),
-                listed.join(", ")
-            )),
+            note: Some(Note::on_all(NoteKind::LooseParts {
+                parts: order.iter().map(named).collect(),
+            })),
             layers,
         }
     }

@@ -1,6 +1,7 @@
 //! What every stage of the mapping has to say.
 
 use super::DeformedPose;
+use super::note::Note;
 use crate::compatible::{RefineReport, SimplifyReport, TriangulateReport};
 use crate::matching::MatchReport;
 use crate::pose::{MeshQuality, PlacedLandmark};
@@ -35,8 +36,8 @@ impl std::fmt::Display for Stage {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct MappingReport {
-    /// What the artist should know: one line a remark, each naming its pose.
-    pub notes: Vec<String>,
+    /// What the artist should know.
+    pub notes: Vec<Note>,
     /// How the outer rings were matched. The numbers in [`PoseMatch::landmarks`](crate::matching::PoseMatch::landmarks)
     /// are places in `landmarks`.
     pub matching: MatchReport,

@@ -32,6 +32,7 @@ pub use error::SpecError;
 
 use std::sync::Arc;
 
+use super::note::Note;
 use crate::blend::BlendOptions;
 use crate::compatible::{RefineOptions, SimplifyOptions};
 use crate::input::{Drawing, SvgOptions};
@@ -53,8 +54,8 @@ pub struct CharacterSpec {
     pub texture: TextureSpec,
     /// What frames show. [`CharacterSpec::on_canvas`] sets it together with what else that takes.
     pub camera: CameraRule,
-    /// What the artist should know of how it was made, one line a remark; the first notes of its build.
-    pub notes: Vec<String>,
+    /// What the artist should know of how it was made; the first notes of its build.
+    pub notes: Vec<Note>,
 }
 
 /// What frames show.

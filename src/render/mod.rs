@@ -30,8 +30,8 @@ mod texture;
 pub use camera::Camera;
 pub use colour_blend::ColourBlend;
 pub use drawing::{
-    CarriedDrawing, Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, PoseArt,
-    Spread, Stop, Stroke, Subpath, VectorFrame, VectorGroup, VectorNode, VectorPicture, VectorShape,
+    CarriedDrawing, CrossFade, Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement,
+    PoseArt, Spread, Stop, Stroke, Subpath, VectorFrame, VectorGroup, VectorNode, VectorPicture, VectorShape,
 };
 pub use frame::Frame;
 pub use painter::{PaintOptions, Painter, PoseTexture, Sampling};

@@ -8,7 +8,7 @@ use super::SceneBuildError;
 use super::drawings::read_drawing;
 use super::settings::Scene;
 use crate::math::Point;
-use crate::pipeline::{Build, LayerRole};
+use crate::pipeline::{Build, LayerRole, Note};
 use crate::pose::{LandmarkKind, deformation_distances};
 use crate::weights::place_among;
 
@@ -21,8 +21,8 @@ pub struct Newcomer {
     pub landmarks: Vec<(String, Point)>,
     /// The same of lines.
     pub paths: Vec<(String, Vec<Point>)>,
-    /// What the artist should know, one line a remark.
-    pub notes: Vec<String>,
+    /// What the artist should know.
+    pub notes: Vec<Note>,
 }
 
 impl Scene {

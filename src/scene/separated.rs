@@ -10,7 +10,7 @@ use super::drawings::read_drawing;
 use super::settings::Scene;
 use crate::input::{Art, Canvas, Picture};
 use crate::outline::Outline;
-use crate::pipeline::{HandleMove, PoseShape};
+use crate::pipeline::{HandleMove, Note, PoseShape};
 
 /// A scene's parts.
 #[derive(Debug, Clone)]
@@ -20,8 +20,8 @@ pub struct Separated {
     pub layers: Vec<SeparatedLayer>,
     /// For each pose the layers from back to front.
     pub draw_orders: Vec<Vec<usize>>,
-    /// What the artist should know, one line a remark.
-    pub notes: Vec<String>,
+    /// What the artist should know.
+    pub notes: Vec<Note>,
 }
 
 /// One part of a scene's drawings.

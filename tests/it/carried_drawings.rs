@@ -52,7 +52,7 @@ fn art(body: &str) -> Art {
     drawing.art.expect("curves")
 }
 
-fn carried(mapping: &Mapping, bodies: &[&str]) -> (CarriedDrawing, Vec<String>) {
+fn carried(mapping: &Mapping, bodies: &[&str]) -> (CarriedDrawing, Vec<CrossFade>) {
     let art = bodies.iter().enumerate().map(|(drawn_on, body)| PoseArt {
         art: art(body),
         drawn_on,
@@ -198,7 +198,10 @@ fn what_cannot_change_gradually_fades_and_is_noted() {
     };
     let (carried, notes) = carried(&mapping, &[&with("url(#g)"), &with("url(#h)")]);
     assert_eq!(notes.len(), 1);
-    assert!(notes[0].contains("'a'") && notes[0].contains("radial"), "{notes:?}");
+    assert!(
+        notes[0].element == "a" && notes[0].reason.contains("radial"),
+        "{notes:?}"
+    );
     let nodes = carried.frame(&mapping.poses.positions()[0], &[0.5, 0.5], &[0.5, 0.5]);
     assert_eq!(ids(&nodes), ["a@pose0", "a@pose1", "b"]);
 }

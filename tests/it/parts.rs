@@ -77,6 +77,12 @@ fn pieces_at(character: &Character, weights: &[f64]) -> usize {
     pieces(&character.frame_of(weights).expect("a frame"))
 }
 
+/// The notes that speak of something.
+fn remarks(character: &Character, on: &str) -> Vec<String> {
+    let told = character.notes().iter().map(ToString::to_string);
+    told.filter(|note| note.contains(on)).collect()
+}
+
 /// A body with a head that floats above it.
 fn floating(x: f64, head: f64) -> Vec<Shape> {
     vec![(x, 140.0, 30.0, 45.0, INK), (x + 4.0, head, 18.0, 18.0, SKIN)]
@@ -95,7 +101,7 @@ fn a_floating_head_stays_with_its_body() {
         assert_eq!(pieces_at(&character, &weights), 2, "{weights:?}");
     }
     assert_eq!(character.layers().len(), 2);
-    let told: Vec<&String> = character.notes().iter().filter(|note| note.contains("loose")).collect();
+    let told = remarks(&character, "loose");
     assert_eq!(told.len(), 1, "{told:?}");
     assert!(
         told[0].contains("2 loose parts") && told[0].contains("part 2'"),
@@ -198,11 +204,7 @@ fn parts_can_be_left_out_kept_and_dropped() {
     let largest = write(folder.path(), &poses, "[input]\nparts = \"largest\"\n");
     let without = character(&largest);
     assert_eq!((without.layers().len(), pieces_at(&without, &[0.5, 0.5])), (1, 1));
-    assert!(
-        without.notes().iter().any(|note| note.contains("loose part")),
-        "{:?}",
-        without.notes()
-    );
+    assert!(!remarks(&without, "loose part").is_empty(), "{:?}", without.notes());
     // A place on the head drops it, a place on it keeps it where all others are left out.
     let text = std::fs::read_to_string(&largest.file).expect("text");
     let with = |key: &str, text: &str| {
@@ -219,7 +221,7 @@ fn parts_can_be_left_out_kept_and_dropped() {
     let all = text.replace("[input]\nparts = \"largest\"\n", "");
     let dropped = character(&opened(folder.path(), &with("drop", &all)));
     assert_eq!((dropped.layers().len(), pieces_at(&dropped, &[0.5, 0.5])), (1, 1));
-    assert!(!dropped.notes().iter().any(|note| note.contains("loose part")));
+    assert!(remarks(&dropped, "loose part").is_empty());
     // A place beside everything is refused with what to do.
     let beside = all.replace("name = \"stand\"", "name = \"stand\"\ndrop = [ [5.0, 195.0] ]");
     let refusal = opened(folder.path(), &beside)
@@ -247,13 +249,9 @@ fn dust_is_no_part_and_is_told_of_in_a_line_a_pose() {
     let scene = write(folder.path(), &[("a", dusty(90.0, 1)), ("b", dusty(105.0, 2))], "");
     let character = character(&scene);
     assert_eq!((character.layers().len(), pieces_at(&character, &[0.5, 0.5])), (1, 1));
-    let told: Vec<&String> = character.notes().iter().filter(|note| note.contains("speck")).collect();
+    let told = remarks(&character, "speck");
     assert_eq!(told.len(), 2, "{:?}", character.notes());
-    assert!(
-        !character.notes().iter().any(|note| note.contains("loose")),
-        "{:?}",
-        character.notes()
-    );
+    assert!(remarks(&character, "loose").is_empty(), "{:?}", character.notes());
 }
 
 #[test]

@@ -62,7 +62,12 @@ fn the_wizards_loose_parts_are_a_hat_three_sparks_and_a_drop() {
     let scene = Scene::open(&scene_file("wizard")).expect("a scene");
     let character = scene.character([192, 216], 1).expect("a character");
     assert_eq!(character.layers().len(), 6);
-    let told = character.notes().join("\n");
+    let told = character
+        .notes()
+        .iter()
+        .map(ToString::to_string)
+        .collect::<Vec<_>>()
+        .join("\n");
     // The drop alone is in one drawing only, and the shadow at the sheet's edge is no part.
     assert_eq!(told.matches("(not in 2 poses)").count(), 1, "{told}");
     assert_eq!(told.matches("along a whole border").count(), 3, "{told}");

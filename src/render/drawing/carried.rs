@@ -84,7 +84,7 @@ struct Node {
 }
 
 impl CarriedDrawing {
-    /// The drawings `art` on the mesh of `mapping`, seen by `camera`; with what the artist should know about them, a line each.
+    /// The drawings `art` on the mesh of `mapping`, seen by `camera`; with the elements that correspond and are cross-faded all the same.
     ///
     /// `drawing_of` says for each pose which of `art` it shows: poses that show the same one (deformed copies) need no drawing of
     /// their own. An art whose pose is not in the mapping is left out, and so is a pose whose drawing does not exist.
@@ -95,7 +95,7 @@ impl CarriedDrawing {
         drawing_of: Vec<usize>,
         silhouette: Silhouette,
         camera: Camera,
-    ) -> (Self, Vec<String>) {
+    ) -> (Self, Vec<CrossFade>) {
         let poses = mapping.poses.positions();
         let triangles = mapping.poses.topology().triangles();
         let drawing_count = art.len();
@@ -293,8 +293,32 @@ impl Node {
     }
 }
 
+/// Elements that correspond and are cross-faded, since what they are painted with cannot be blended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct CrossFade {
+    /// What they are called.
+    pub element: String,
+    /// Why it cannot be blended.
+    pub reason: &'static str,
+}
+
+impl std::fmt::Display for CrossFade {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { element, reason } = self;
+        write!(
+            f,
+            "the elements '{element}' are cross-faded, not morphed, because {reason}"
+        )
+    }
+}
+
 /// Which elements become one node, in the order in which they are first met, and the nodes of each drawing from back to front.
-fn match_elements<'a>(art: &[&'a Art], names: &[&str], notes: &mut Vec<String>) -> (Vec<Matched<'a>>, Vec<Vec<usize>>) {
+fn match_elements<'a>(
+    art: &[&'a Art],
+    names: &[&str],
+    notes: &mut Vec<CrossFade>,
+) -> (Vec<Matched<'a>>, Vec<Vec<usize>>) {
     let groups = groups_by_id(art);
     let mut taken = BTreeSet::new();
     let mut unique = |wanted: String| {
@@ -319,9 +343,10 @@ fn match_elements<'a>(art: &[&'a Art], names: &[&str], notes: &mut Vec<String>) 
         });
         let styles = Styles::new(&elements);
         if let Err(reason) = &styles {
-            notes.push(format!(
-                "the elements '{id}' are cross-faded, not morphed, because {reason}"
-            ));
+            notes.push(CrossFade {
+                element: id.clone(),
+                reason,
+            });
         }
         let mut add = |id: String, members: &[(usize, usize)], elements: Vec<&'a ArtElement>, styles: Styles| {
             for &(drawing, k) in members {

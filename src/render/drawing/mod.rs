@@ -19,7 +19,7 @@ mod raster;
 mod strand;
 mod style;
 
-pub use carried::{CarriedDrawing, PoseArt};
+pub use carried::{CarriedDrawing, CrossFade, PoseArt};
 pub use frame::{VectorFrame, VectorGroup, VectorNode, VectorPicture, VectorShape};
 
 // The style of paths is the same in drawings and frames; only the unit differs.
