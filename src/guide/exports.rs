@@ -13,7 +13,7 @@
 //! | APNG | `.apng` | everything | Pillow |
 //! | WebP | `.webp` | everything, lossless | Pillow |
 //! | sprite sheet | `.png` and `.json`, `--format sprites` | everything; frames are cut to what is drawn and packed | Pillow |
-//! | MP4 | `.mp4`, needs ffmpeg | no transparency: white is behind, or `--background` | ffprobe, ffmpeg |
+//! | MP4 | `.mp4`, needs ffmpeg | no transparency: white is behind, or `--background`; odd sides are padded to even ones | ffprobe, ffmpeg |
 //! | WebM | `.webm`, needs ffmpeg | transparency | ffprobe, ffmpeg |
 //! | animated SVG | `.svg` (SMIL) | curves with keys | Chromium |
 //! | Lottie | `.json` | curves with keys; no elliptic gradients | lottie-web, the Lottie schema |
@@ -31,7 +31,8 @@
 //! ```
 //!
 //! `--size`, `--fps`, `--camera` and `--background` take the place of what the scene says. `--supersample 4` looks at 4 x 4 points of each pixel, for the final
-//! pictures. `--frames 1-10,20` or `--frames 1-99:2` renders some frames only.
+//! pictures. `--frames 1-10,20` or `--frames 1-99:2` renders some frames only; formats of
+//! moving curves need frames in a row.
 //!
 //! # Formats with keys
 //!

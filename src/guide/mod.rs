@@ -2,7 +2,7 @@
 //!
 //! `inbetween` takes several drawings of one character, made independently of one another, and makes the drawings between them. Every
 //! chapter below is about one thing that an artist decides, in the order in which the decisions come up. The chapters use the command
-//! and its scene file; whoever programs finds the same things as types in the last one. Nothing in a chapter needs a later one.
+//! and its scene file; whoever programs finds the same things as types in the last one.
 //!
 //! | chapter | what it answers |
 //! |---|---|

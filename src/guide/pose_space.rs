@@ -4,7 +4,7 @@
 //!
 //! Every pose lies at a place `at` of the pose space, mostly in the plane. All poses have a place or none. Without places they are
 //! laid out by how far their drawings are from one another; `new` writes such places into the scene file, where they can be changed. No two
-//! poses lie at one place.
+//! poses lie at one place. In a scene with layers that gives no places, at least one layer has to be in all poses.
 //!
 //! A useful space has directions that mean something: to the right the figure leans right, upwards it is happier. The places are the only
 //! thing that says so. A coordinate may have any scale, but both should have about the same.
@@ -39,7 +39,7 @@
 //! linearly beyond them; their `radial` function is `"b-spline"`, or `"thin-plate"`.
 //!
 //! Weights may be negative or above 1, most of all outside the region of the poses: there the character does more of what a pose does than
-//! the pose itself. That is often wanted. Where it goes too far, `bounded = true` or a walk that stays inside is the remedy, and
+//! the pose itself. That is often wanted. Where it goes too far, `bounded = true` or a path that stays among the poses is the remedy, and
 //! [`blending`](super::blending) has others.
 //!
 //! If the blend at a place is right, but wanted somewhere else, a pseudo-pose says so: the weights that are found at `from` are those at

@@ -36,8 +36,8 @@ fn blocks(text: &str, language: &str) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     let mut is_inside = false;
     for line in lines {
-        if line.starts_with("```") {
-            is_inside = !is_inside && line[3..] == *language;
+        if let Some(begun) = line.strip_prefix("```") {
+            is_inside = !is_inside && begun == language;
             if is_inside {
                 found.push(String::new());
             }
