@@ -83,3 +83,5 @@
 //! simplify = 0.006          # 0.02 without it
 //! edge_length = 0.04        # 0.05 without it
 //! ```
+//!
+//! The next chapter: [`layers`](super::layers).

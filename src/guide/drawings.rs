@@ -146,3 +146,5 @@
 //! What is as white as the paper belongs to the figure only if a line or paint encloses it. A figure on a background that is not plain has
 //! to be cut out. What is hidden in one drawing and seen in another is stretched or faded, unless it is a
 //! [layer](super::layers) of its own.
+//!
+//! The next chapter: [`landmarks`](super::landmarks).

@@ -60,3 +60,5 @@
 //! from. Any share of the frames can be rendered on any computer, with any number of threads, to the same bytes; that is all a render farm
 //! needs. The repository's folder `farm` has a template in the Open Job Description and a script for Slurm. `--progress json` tells progress
 //! to programs. The exit code is 0 when everything is written, 1 for bad input or failed work, and 2 for wrong usage.
+//!
+//! The next chapter: [`explorer`](super::explorer).

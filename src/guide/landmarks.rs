@@ -92,3 +92,5 @@
 //! inbetween check cat.json
 //! inbetween blend cat.json --weights 0.5,0.5,0 -o frame.json
 //! ```
+//!
+//! The next chapter: [`pose_space`](super::pose_space).

@@ -84,3 +84,5 @@
 //!
 //! Where the mesh is stretched a lot, carried lines may waver; a finer mesh or a landmark nearby helps. Cross-fades between curves are averaged as
 //! the numbers stand in the file, whatever `blending` says.
+//!
+//! The next chapter: [`exports`](super::exports).

@@ -31,7 +31,7 @@
 //! says nothing else, that is a loop through all poses, a second from each to the next. Both tell what they found and what they left
 //! out, a line a remark, each beginning with `note:`.
 //!
-//! The result is seldom right at once. These three look at it more closely:
+//! Three more commands look closely at what was made of the drawings, since the first result is seldom right in everything:
 //!
 //! ```text
 //! inbetween show cat/scene.toml -o cat.png

@@ -135,3 +135,5 @@
 //! ```text
 //! inbetween frame cat/scene.toml --weights 0.5,0.5,0 -o half.png
 //! ```
+//!
+//! The next chapter: [`blending`](super::blending).

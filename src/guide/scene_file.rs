@@ -135,3 +135,5 @@
 //! ```
 //!
 //! The scene of a shape in space is a file of another kind; [`ShapeScene`](crate::scene::ShapeScene) has all its keys.
+//!
+//! The next chapter: [`shapes_in_space`](super::shapes_in_space).

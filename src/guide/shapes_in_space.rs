@@ -87,3 +87,5 @@
 //!
 //! [`shape3d::Shape`](crate::shape3d::Shape) is the same for forms in memory, and [`FormBlender`](crate::shape3d::FormBlender) blends them in single
 //! precision, as fast as memory can be read.
+//!
+//! The next chapter: [`library`](super::library).
