@@ -1,4 +1,4 @@
-//! Every picture of the README but the explorer's, which is a photograph of its page: `cargo run --release --example gallery --
+//! Every picture in `data/pictures` but the explorer's, which is a photograph of its page: `cargo run --release --example gallery --
 //! data/pictures` draws them again.
 //!
 //! The stages of the pipeline, the comparisons of blends and the cardinal basis come from the examples of those names; the animations, the

@@ -6,6 +6,8 @@
 //! Sources: Baxter, Barla, Anjyo, "N-way morphing for 2D animation" (2009), called NWM in these pages; the weights also after Sloan,
 //! Rose, Cohen, "Shape by Example" (2001), called SBE.
 //!
+//! The [`guide`] says how to use it, chapter by chapter, with the command and as a library.
+//!
 //! # The pipeline
 //!
 //! | stage | from | to |
@@ -43,6 +45,9 @@
 //! Coordinates are `f64`, x to the right and y down as in the source file; an outline has positive signed area, its holes negative.
 //! Nothing here reads a clock or the environment, and results do not depend on the number of threads. Files are opened
 //! by [`input`], [`scene`] and [`export`] alone.
+
+// What there is to read, before what there is to call.
+pub mod guide;
 
 // Foundations.
 pub mod math;

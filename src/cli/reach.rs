@@ -22,7 +22,7 @@ use super::values::Numbers;
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  inbetween reach walker/scene.toml --handle right_thumb=560,300 -o -
+  inbetween reach clown/scene.toml --handle left_hand=60,300
   inbetween reach clown/scene.toml --handle left_hand=80,120 --handle right_hand=560,420")]
 pub(crate) struct Arguments {
     /// The scene file

@@ -10,6 +10,7 @@ mod decoders;
 mod deformed;
 mod drawn;
 mod explorer;
+mod guide;
 mod holes;
 mod import_law;
 mod inner_lines;
