@@ -24,7 +24,7 @@ mod triangulate;
 
 pub use refine::{Guide, RefineError, RefineOptions, RefineReport, refine, refine_guided};
 pub use simplify::{
-    Simplification, Simplified, SimplifiedAlone, SimplifyError, SimplifyOptions, SimplifyReport, simplify,
+    RingPoint, Simplification, Simplified, SimplifiedAlone, SimplifyError, SimplifyOptions, SimplifyReport, simplify,
 };
 pub use triangulate::{
     Effort, Feature, FeaturePath, Features, PathEnd, TriangulateError, TriangulateReport, triangulate,

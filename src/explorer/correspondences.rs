@@ -6,7 +6,7 @@ use std::sync::Arc;
 use inbetween::input::{Drawing, Picture};
 use inbetween::math::{Point, point};
 use inbetween::mesh::PointLocator;
-use inbetween::outline::{ArcLength, Outline, Ring};
+use inbetween::outline::{ArcLength, Outline};
 use inbetween::pipeline::INTERIOR_DEPTH;
 use inbetween::pose::LandmarkKind;
 use inbetween::render::Frame;
@@ -130,6 +130,7 @@ fn matched(bench: &Workbench, layer: usize, samples: usize, known: &[&str]) -> V
             "name": landmark.name,
             "kind": match landmark.kind {
                 LandmarkKind::OnOutline => "outline",
+                LandmarkKind::OnRim => "rim",
                 LandmarkKind::Inside => "inside",
                 LandmarkKind::Line => "line",
             },
@@ -265,32 +266,63 @@ pub(super) fn carry(body: &[u8], session: &Session) -> Result<Response, Refusal>
     if !point::is_finite(place) {
         return Err(Refusal::bad("`at` is not finite"));
     }
-    let curve = |ring: &Ring| ArcLength::new(ring);
-    let outline = &mapping.outlines[own];
-    let (t, distance) = curve(outline.outer()).nearest(place);
-    let size = point::diagonal(outline.outer().points());
-    let is_inside = outline.contains(place) && distance > INTERIOR_DEPTH * size;
-    let at: Option<Vec<[f64; 2]>> = if is_inside {
-        let triangles = mapping.poses.topology().triangles();
-        let bound = PointLocator::new(triangles, &mapping.poses.positions()[own]).bind(place);
-        bound.map(|bound| {
-            mapping
-                .poses
-                .positions()
-                .iter()
-                .map(|positions| pair(bound.at(positions)))
-                .collect()
-        })
-    } else {
-        let carried = |pose: usize| {
-            let t = mapping.matching.outer.carry(own, pose, t);
-            pair(curve(mapping.outlines[pose].outer()).at(t))
-        };
-        Some((0..names.len()).map(carried).collect())
+    let Place { ring, at: t, is_inside } = Place::of(&mapping.outlines[own], place);
+    let triangles = mapping.poses.topology().triangles();
+    let everywhere = mapping.poses.positions();
+    let locator = || PointLocator::new(triangles, &everywhere[own]);
+    let at: Option<Vec<[f64; 2]>> = match ring {
+        _ if is_inside => locator().bind(place).map(|bound| everywhere.iter().map(|at| pair(bound.at(at))).collect()),
+        0 => {
+            let outer = |pose: usize| ArcLength::new(mapping.outlines[pose].outer());
+            let carried = |pose: usize| pair(outer(pose).at(mapping.matching.outer.carry(own, pose, t)));
+            Some((0..names.len()).map(carried).collect())
+        }
+        // Rims are within the mesh, which carries them; the other rim is nearby.
+        rim => {
+            let curve = |pose: usize| Some(ArcLength::new(mapping.outlines[pose].rings().get(rim)?));
+            let place = curve(own).map(|own| own.at(t));
+            // By the nearest point of the mesh, if rounding puts it beside.
+            let bound = place.and_then(|place| Some((place, *locator().bind_along([place])?.first()?)));
+            bound.and_then(|(place, bound)| {
+                let carried = |pose: usize| {
+                    let curve = curve(pose)?;
+                    let near = bound.at(&everywhere[pose]);
+                    Some(pair(if pose == own { place } else { curve.at(curve.nearest(near).0) }))
+                };
+                (0..names.len()).map(carried).collect()
+            })
+        }
     };
-    Ok(Response::json(&json!({
-        "kind": if is_inside { "inside" } else { "outline" },
-        "poses": names,
-        "at": at,
-    })))
+    let kind = match ring {
+        _ if is_inside => "inside",
+        0 => "outline",
+        _ => "rim",
+    };
+    Ok(Response::json(&json!({"kind": kind, "poses": names, "at": at})))
+}
+
+/// What a place of a pose is taken for: the nearest place of its rings, unless it lies deep inside.
+struct Place {
+    /// The nearest ring; 0 is the outer one.
+    ring: usize,
+    /// The parameter there.
+    at: f64,
+    is_inside: bool,
+}
+
+impl Place {
+    fn of(outline: &Outline, place: Point) -> Self {
+        let (mut ring, (mut at, mut distance)) = (0, ArcLength::new(outline.outer()).nearest(place));
+        for (hole, rim) in outline.holes().iter().enumerate() {
+            let (t, away) = ArcLength::new(rim).nearest(place);
+            if away < distance {
+                (ring, at, distance) = (hole + 1, t, away);
+            }
+        }
+        Self {
+            ring,
+            at,
+            is_inside: outline.contains(place) && distance > INTERIOR_DEPTH * outline.diagonal(),
+        }
+    }
 }

@@ -165,7 +165,7 @@
 //!  "links": [{"at": [[x, y], ...], "landmark": null}, ...],  // numbered from 1; one point a pose of the layer
 //!  "costs": [[0.3, ...], ...],                              // per pose, from link k to the next: how unlike the outlines are
 //!  "suggestions": [{"pose": 2, "from": 3, "to": 4, "cost": 2.9}, ...],  // between these links (from 0) a landmark would help
-//!  "landmarks": [{"name": "nose", "kind": "outline",    // or "inside", "line"
+//!  "landmarks": [{"name": "nose", "kind": "outline",    // or "rim" (of a hole), "inside", "line"
 //!                 "given": [true, false, ...], "at": [[[x, y]], ...]}, ...],   // per pose the points of it
 //!  "samples": [[x, y, x, y, ...], ...]}                   // per pose as many corresponding points as asked for, at most 4096
 //! ```
@@ -173,7 +173,7 @@
 //! and `picture` are null otherwise), and `shape` is 0. While a landmark that was moved is not mapped yet, or cannot be, `landmarks`
 //! are those of the match that is shown; those of the newest scene are in `api/scene`.
 //!
-//! `POST api/carry {"layer": 0, "pose": "stand", "at": [x, y]}` answers `{"kind": "outline" | "inside", "poses": ["stand", ...],
+//! `POST api/carry {"layer": 0, "pose": "stand", "at": [x, y]}` answers `{"kind": "outline" | "rim" | "inside", "poses": ["stand", ...],
 //! "at": [[x, y], ...]}`: where the present match has this point on every pose of the layer; what a new landmark begins with.
 //!
 //! # Figures

@@ -122,7 +122,8 @@ impl RingCandidates {
     }
 
     /// The match that begins with candidate number `chosen[pose]` of every pose and takes each row to the place of the outline nearest to
-    /// where `carried` takes the reference's point; landmarks stay. Where it knows nothing, the row stays.
+    /// where `carried` takes the reference's point; landmarks stay. Where it knows nothing, the row stays. Where it takes a landmark to another place
+    /// than the artist, what it says around is taken relative to the landmarks: they know more.
     ///
     /// # Errors
     /// As [`match_rings`](super::match_rings).
@@ -151,9 +152,21 @@ impl RingCandidates {
                 let form = &self.forms[pose];
                 let mut parameters = candidate.parameters.clone();
                 let wanted = |place: &Point| Some(form.curve.normalised(carried(pose, *place)?));
+                let turned = |t: f64, place: &Point| Some(form.curve.nearest_within(wanted(place)?, t, 0.5) - t);
+                let strays: Vec<(usize, f64)> = (pins[pose].iter())
+                    .filter_map(|pin| Some((pin.row, turned(parameters[pin.row], &places[pin.row])?)))
+                    .collect();
+                if strays.iter().any(|(_, stray)| stray.abs() > SETTLE_REACH) {
+                    for (row, (t, place)) in parameters.iter_mut().zip(&places).enumerate() {
+                        if let Some(wanted) = wanted(place) {
+                            let stray = stray_at(&strays, row, places.len());
+                            *t = form.curve.nearest_within(wanted, *t + stray, SETTLE_REACH) - stray;
+                        }
+                    }
+                    return Some(closed(&model, form, parameters, &pins[pose]));
+                }
                 let rows = parameters.iter().zip(&places).step_by(TURN_STRIDE);
-                let turns = rows.filter_map(|(t, place)| Some(form.curve.nearest_within(wanted(place)?, *t, 0.5) - t));
-                let turn = median(turns.collect());
+                let turn = median(rows.filter_map(|(t, place)| turned(*t, place)).collect());
                 if turn.abs() > SETTLE_REACH {
                     parameters.iter_mut().for_each(|t| *t += turn);
                 }
@@ -174,6 +187,23 @@ impl RingCandidates {
             options.mirror_hints,
         )
     }
+}
+
+/// What strays by `strays` at some rows, in order, strays by at `row` of `count`: linear between them, around.
+fn stray_at(strays: &[(usize, f64)], row: usize, count: usize) -> f64 {
+    let after = strays.partition_point(|(own, _)| *own <= row);
+    let pins = strays.len().max(1);
+    let (Some(from), Some(to)) = (strays.get((after + pins - 1) % pins), strays.get(after % pins)) else {
+        return 0.0;
+    };
+    let rows = |from: usize, to: usize| (to + count - from) % count;
+    let span = match rows(from.0, to.0) {
+        0 => count,
+        span => span,
+    };
+    // Half a turn one way is half a turn the other way.
+    let grows = (to.1 - from.1) - (to.1 - from.1).round();
+    from.1 + grows * rows(from.0, row) as f64 / span as f64
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

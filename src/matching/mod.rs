@@ -7,7 +7,7 @@
 //! - `elastic`, `start`: dynamic programming over turning and stretch, over all cyclic starts.
 //! - `coarse`, `pair`, `thin_plate`, `monotone`: from coarse candidates to the match of a pose to the reference.
 //! - `n_way`, `landmark`: all poses, guided by landmarks.
-//! - `openings`: which holes all outlines have.
+//! - `openings`: which holes all outlines have; `ties`: which of them landmarks on their rims say are one.
 
 mod candidates;
 mod coarse;
@@ -26,6 +26,7 @@ mod pair;
 mod reflection;
 mod start;
 mod thin_plate;
+mod ties;
 
 pub use candidates::RingCandidates;
 pub use correspondence::{Correspondence, CorrespondenceError};
@@ -35,4 +36,4 @@ pub use landmark::Landmark;
 pub(crate) use n_way::match_rings_beside;
 pub use n_way::{MatchOptions, MatchReport, MirrorHints, PoseMatch, RingMatch, match_rings};
 pub use openings::shared_holes;
-pub(crate) use openings::surest_pairs;
+pub use ties::{HoleTieError, HoleTies};

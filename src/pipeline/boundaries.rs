@@ -6,12 +6,9 @@ use super::drawn::{Known, RegistrationGuide, match_by_drawing};
 use super::spec::LayerSpec;
 use super::{PipelineError, Stage};
 use crate::appearance::Appearance;
-use crate::compatible::{Simplification, Simplified, SimplifiedAlone, SimplifyError, SimplifyOptions};
+use crate::compatible::{RingPoint, Simplification, Simplified, SimplifiedAlone, SimplifyError, SimplifyOptions};
 use crate::input::Drawing;
-use crate::matching::{
-    Correspondence, Landmark, MatchError, MatchOptions, MatchReport, MirrorHints, match_rings, match_rings_beside,
-};
-use crate::math::Point;
+use crate::matching::{Correspondence, Landmark, MatchError, MatchOptions, MatchReport, match_rings_beside};
 use crate::outline::{Outline, Ring};
 
 /// How far corresponding vertices may drift apart where drawings say what corresponds, as a share of the deviation allowed, and at least, as a
@@ -22,7 +19,7 @@ const LEAST_DRIFT: f64 = 0.01;
 /// The outlines matched and simplified, and what that was made of besides the drawings.
 #[derive(Debug)]
 pub(super) struct Boundaries {
-    on_outline: Vec<Landmark>,
+    known: Known,
     reference: Option<usize>,
     tolerance: f64,
     /// Holes in one order.
@@ -32,10 +29,8 @@ pub(super) struct Boundaries {
     pub(super) appearances: Vec<Arc<Appearance>>,
     /// Where that is in every pose; `None` where nothing is drawn inside.
     pub(super) guide: Option<RegistrationGuide>,
-    /// Pairs of points inside that guide the registration.
-    inside: Vec<Vec<Option<Point>>>,
-    /// The places of the landmarks, #landmarks x #poses.
-    pub(super) pinned: Vec<Vec<f64>>,
+    /// The places of the landmarks on outlines, then of those on rims, #landmarks x #poses.
+    pub(super) pinned: Vec<Vec<RingPoint>>,
     /// To be varied.
     pub(super) simplification: Simplification,
     pub(super) simplified: Simplified,
@@ -46,8 +41,7 @@ impl Boundaries {
     pub(super) fn new(
         layer: &LayerSpec,
         drawings: &[Arc<Drawing>],
-        on_outline: &[Landmark],
-        inside: &[Vec<Option<Point>>],
+        known: Known,
         before: Option<&Self>,
         begins: &mut dyn FnMut(Stage),
     ) -> Result<Self, PipelineError> {
@@ -57,7 +51,7 @@ impl Boundaries {
         let refusal = |error| simplify_refusal(&layer.names(), error);
         let given = outlines.clone();
         let alone_options = options.clone();
-        let alone = || alone(&given, on_outline, &alone_options, before);
+        let alone = || alone(&given, &known, &alone_options, before);
         let appearances = match before {
             Some(before) => before.appearances.clone(),
             None => super::drawn::appearances(drawings),
@@ -77,10 +71,7 @@ impl Boundaries {
                         drawings,
                         &mut outlines,
                         &appearances,
-                        &Known {
-                            landmarks: on_outline,
-                            inside,
-                        },
+                        &known,
                         before.and_then(|before| before.guide.as_ref()),
                         options,
                     )
@@ -90,7 +81,7 @@ impl Boundaries {
             let (matched, guide) = matched?;
             (matched, alone, Some(guide))
         } else {
-            let (matched, alone) = match_outlines(layer, &mut outlines, on_outline, alone)?;
+            let (matched, alone) = match_outlines(layer, &outlines, &known.on_outline, alone)?;
             (matched, alone, None)
         };
         let alone = alone.map_err(refusal)?;
@@ -100,22 +91,23 @@ impl Boundaries {
             _ => options,
         };
         begins(Stage::Simplification);
-        let pinned: Vec<Vec<f64>> = on_outline
-            .iter()
-            .filter_map(|landmark| everywhere(landmark, &matched.correspondences[0]))
+        let on_rims = known.on_rims.iter().zip(&matched.rim_rings);
+        let marked = (known.on_outline.iter().map(|landmark| (landmark, 0)))
+            .chain(on_rims.map(|(rim, &ring)| (&rim.landmark, ring)));
+        let pinned: Vec<Vec<RingPoint>> = marked
+            .filter_map(|(landmark, ring)| everywhere(landmark, ring, &matched.correspondences[ring]))
             .collect();
         let simplification = Simplification::with(&outlines, &matched.correspondences, &pinned, &options, &alone);
         let mut simplification = simplification.map_err(refusal)?;
         let simplified = simplification.polygons().map_err(refusal)?;
         Ok(Self {
-            on_outline: on_outline.to_vec(),
+            known,
             reference: layer.reference,
             tolerance: layer.mesh.simplify.tolerance,
             outlines,
             matched,
             appearances,
             guide,
-            inside: inside.to_vec(),
             pinned,
             simplification,
             simplified,
@@ -123,9 +115,8 @@ impl Boundaries {
     }
 
     /// Whether they are those of this layer, too, whose drawings are the same.
-    pub(super) fn serve(&self, layer: &LayerSpec, on_outline: &[Landmark], inside: &[Vec<Option<Point>>]) -> bool {
-        self.inside == inside
-            && self.on_outline == on_outline
+    pub(super) fn serve(&self, layer: &LayerSpec, known: &Known) -> bool {
+        self.known == *known
             && self.reference == layer.reference
             && self.tolerance == layer.mesh.simplify.tolerance
     }
@@ -134,16 +125,20 @@ impl Boundaries {
 /// The outlines simplified alone, but for poses that lack a landmark: its place comes from the matching.
 fn alone(
     outlines: &[Outline],
-    on_outline: &[Landmark],
+    known: &Known,
     options: &SimplifyOptions,
     before: Option<&Boundaries>,
 ) -> Result<SimplifiedAlone, SimplifyError> {
-    let known = on_outline
-        .iter()
-        .filter(|landmark| landmark.at.iter().any(Option::is_some));
-    let known: Vec<Vec<Option<f64>>> = known.map(|landmark| landmark.at.clone()).collect();
+    let on = |ring: usize| move |parameter: f64| RingPoint { ring, parameter };
+    let on_outline = (known.on_outline.iter()).map(|landmark| landmark.at.iter().map(|t| t.map(on(0))).collect());
+    let on_rims = known.on_rims.iter().map(|rim| {
+        let places = rim.landmark.at.iter().zip(&rim.holes);
+        places.map(|(t, hole)| Some(on((*hole)? + 1)((*t)?))).collect()
+    });
+    let mut rows: Vec<Vec<Option<RingPoint>>> = on_outline.chain(on_rims).collect();
+    rows.retain(|row| row.iter().any(Option::is_some));
     let before = before.map(|before| before.simplification.alone()).unwrap_or_default();
-    SimplifiedAlone::new(outlines, &known, options, &before)
+    SimplifiedAlone::new(outlines, &rows, options, &before)
 }
 
 /// All rings, matched.
@@ -154,40 +149,32 @@ pub(super) struct Matched {
     pub(super) correspondences: Vec<Correspondence>,
     pub(super) outer: MatchReport,
     pub(super) holes: Vec<MatchReport>,
+    /// By landmark on a rim, its ring.
+    pub(super) rim_rings: Vec<usize>,
 }
 
-/// Matches the outer rings, puts the holes of all poses in one order, and matches them; `beside` is other work, done where
-/// matching leaves processors idle.
+/// Matches the outlines of figures without holes; `beside` is other work, done where matching leaves processors idle.
 fn match_outlines<T: Send>(
     layer: &LayerSpec,
-    outlines: &mut [Outline],
+    outlines: &[Outline],
     landmarks: &[Landmark],
     beside: impl FnOnce() -> T + Send,
 ) -> Result<(Matched, T), PipelineError> {
     let names = layer.names();
     let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
-    let mut options = MatchOptions {
+    let options = MatchOptions {
         reference: layer.reference,
         ..MatchOptions::default()
     };
     let refusal = |error| match_refusal(&names, error);
     let (first, beside) = match_rings_beside(&outer, landmarks, &options, beside).map_err(refusal)?;
-    order_holes(outlines, first.reference)?;
-    options.turns_rad = first.turns_rad;
-    let mut matched = Matched {
+    let matched = Matched {
         reference: first.reference,
         correspondences: vec![first.correspondence],
         outer: first.report,
         holes: Vec::new(),
+        rim_rings: Vec::new(),
     };
-    options.reference = Some(matched.reference);
-    options.mirror_hints = MirrorHints::Skip;
-    for hole in 0..outlines.first().map_or(0, |outline| outline.holes().len()) {
-        let rings: Vec<Ring> = outlines.iter().map(|outline| outline.holes()[hole].clone()).collect();
-        let of_hole = match_rings(&rings, &[], &options).map_err(refusal)?;
-        matched.correspondences.push(of_hole.correspondence);
-        matched.holes.push(of_hole.report);
-    }
     Ok((matched, beside))
 }
 
@@ -223,56 +210,13 @@ pub(super) fn match_refusal(names: &[String], error: MatchError) -> PipelineErro
     }
 }
 
-/// A landmark on every pose: where a pose lacks it, where the matching puts it.
-fn everywhere(landmark: &Landmark, correspondence: &Correspondence) -> Option<Vec<f64>> {
-    let (from, known) = landmark
-        .at
-        .iter()
-        .enumerate()
-        .find_map(|(pose, t)| t.map(|t| (pose, t)))?;
-    Some(
-        landmark
-            .at
-            .iter()
-            .enumerate()
-            .map(|(pose, t)| t.unwrap_or_else(|| correspondence.carry(from, pose, known)))
-            .collect(),
-    )
-}
-
-/// Puts the holes of every pose in the order of the reference's: each at the nearest place relative to its outline.
-fn order_holes(outlines: &mut [Outline], reference: usize) -> Result<(), PipelineError> {
-    let places: Vec<Point> = match outlines.get(reference) {
-        Some(outline) => outline
-            .holes()
-            .iter()
-            .map(|hole| relative_place(hole, outline.outer()))
-            .collect(),
-        None => return Ok(()),
+/// A landmark on ring `ring` of every pose: where a pose lacks it, where the matching puts it.
+fn everywhere(landmark: &Landmark, ring: usize, correspondence: &Correspondence) -> Option<Vec<RingPoint>> {
+    let given = landmark.at.iter().enumerate();
+    let (from, known) = given.clone().find_map(|(pose, t)| Some((pose, (*t)?)))?;
+    let place = |(pose, t): (usize, &Option<f64>)| RingPoint {
+        ring,
+        parameter: t.unwrap_or_else(|| correspondence.carry(from, pose, known)),
     };
-    if places.len() < 2 {
-        return Ok(());
-    }
-    for outline in outlines.iter_mut() {
-        let mut left: Vec<Ring> = outline.holes().to_vec();
-        let mut ordered = Vec::with_capacity(left.len());
-        for place in &places {
-            let distance = |hole: &Ring| (relative_place(hole, outline.outer()) - place).norm();
-            let nearest = (0..left.len()).min_by(|a, b| distance(&left[*a]).total_cmp(&distance(&left[*b])));
-            if let Some(nearest) = nearest {
-                ordered.push(left.remove(nearest));
-            }
-        }
-        *outline = Outline::new(outline.outer().clone(), ordered)
-            .map_err(|error| PipelineError::stage(&[], None, error))?
-            .with_openings(outline.openings().to_vec());
-    }
-    Ok(())
-}
-
-/// The middle of a hole's box, in units of the outer ring's box.
-fn relative_place(hole: &Ring, outer: &Ring) -> Point {
-    let bounds = |ring: &Ring| crate::math::point::bounding_box(ring.points()).unwrap_or_default();
-    let ((low, high), (outer_low, outer_high)) = (bounds(hole), bounds(outer));
-    ((low + high) * 0.5 - outer_low).component_div(&(outer_high - outer_low).sup(&Point::repeat(f64::MIN_POSITIVE)))
+    Some(given.map(place).collect())
 }

@@ -6,8 +6,8 @@
 //!
 //! | stage | its input | what is kept while that is equal |
 //! |---|---|---|
-//! | drawings | [`DrawnPose`]: drawing, facing | the drawing as it is used |
-//! | boundaries | drawings, landmarks on the outline, reference, tolerance | matching and simplification |
+//! | drawings | [`DrawnPose`]: drawing, facing; landmarks on rims where not all poses have the same holes | the drawing as it is used |
+//! | boundaries | drawings, landmarks on outlines and rims, reference, tolerance | matching and simplification |
 //! | mapping | `MappingInput`: poses, landmarks, lines, reference, mesh | the mesh of all poses |
 //! | blend | [`BlendOptions`](crate::blend::BlendOptions) of the mesh | the factorised system |
 //! | textures | the mapping | the registration of the pictures, once it was asked for |
@@ -22,7 +22,7 @@ use rayon::prelude::*;
 
 use super::boundaries::Boundaries;
 use super::canvas;
-use super::drawings::used_drawings;
+use super::drawings::{covered_outlines, placed_drawings, with_outlines};
 use super::figure::{self, Figure, Posed};
 use super::layer::{self, LayerShape, Part, PosedLayer};
 use super::layout::placed;
@@ -61,7 +61,9 @@ pub struct Build {
 #[derive(Debug, Clone)]
 struct LayerBuild {
     input: Arc<MappingInput>,
-    /// As they are used, one a drawn pose.
+    /// Reflected and moved, with all their holes, one a drawn pose.
+    placed: Arc<Vec<Arc<Drawing>>>,
+    /// As they are used: without the holes that the mesh covers.
     drawings: Arc<Vec<Arc<Drawing>>>,
     report: Arc<MappingReport>,
     boundaries: Arc<Boundaries>,
@@ -349,18 +351,29 @@ fn built(
         return Ok((layer.clone(), shape, notes));
     }
     let same_drawings = was.filter(|(old, ..)| old.has_drawings_of(part.layer));
-    let drawings = match same_drawings {
-        Some((_, layer, _)) => Arc::clone(&layer.drawings),
+    let placed = match same_drawings {
+        Some((_, layer, _)) => Arc::clone(&layer.placed),
         None => {
             let kept = |pose: &DrawnPose| {
                 let (old, layer, _) = was?;
                 let place = old.drawn().position(|old| old == pose)?;
-                layer.drawings.get(place).cloned()
+                layer.placed.get(place).cloned()
             };
-            Arc::new(used_drawings(part.layer, kept).map_err(|error| part.refusal(error))?)
+            Arc::new(placed_drawings(part.layer, kept).map_err(|error| part.refusal(error))?)
         }
     };
-    let boundaries_before = same_drawings.map(|(_, layer, _)| &layer.boundaries);
+    let covered = covered_outlines(part.layer, &placed).map_err(|error| part.refusal(error))?;
+    // Which holes are covered depends on landmarks, too.
+    let same_used = same_drawings.filter(|(_, layer, _)| match &covered {
+        Some(outlines) => layer.drawings.iter().map(|drawing| &drawing.outline).eq(outlines),
+        None => Arc::ptr_eq(&layer.drawings, &placed),
+    });
+    let drawings = match (same_used, covered) {
+        (Some((_, layer, _)), _) => Arc::clone(&layer.drawings),
+        (None, Some(outlines)) => Arc::new(with_outlines(&placed, outlines)),
+        (None, None) => Arc::clone(&placed),
+    };
+    let boundaries_before = same_used.map(|(_, layer, _)| &layer.boundaries);
     let mapped = map_drawings_again(part.layer, &drawings, boundaries_before);
     let (mapping, mut report, boundaries) = mapped.map_err(|error| part.refusal(error))?;
     report.notes = report.notes.into_iter().map(|note| part.named(note)).collect();
@@ -368,6 +381,7 @@ fn built(
     let shape = part.shape(mapping, &mut notes)?;
     let layer = LayerBuild {
         input: Arc::new(input),
+        placed,
         drawings,
         report: Arc::new(report),
         boundaries,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::PipelineError;
+use super::landmark_ring::hole_ties;
 use super::spec::{DrawnPose, Facing, LayerSpec, SvgSource, UnsharedHoles};
 use crate::input::{Drawing, InputError, SvgOptions, read_svg};
 use crate::matching::shared_holes;
@@ -66,8 +67,17 @@ impl DrawnPose {
     }
 }
 
-/// The drawings of a layer as they are used, one a drawn pose, in order. Those whose pose `kept` knows are taken from there.
-pub(super) fn used_drawings(
+/// The drawings of a layer as they are used, one a drawn pose, in order.
+pub(super) fn used_drawings(layer: &LayerSpec) -> Result<Vec<Arc<Drawing>>, PipelineError> {
+    let placed = placed_drawings(layer, |_| None)?;
+    Ok(match covered_outlines(layer, &placed)? {
+        Some(outlines) => with_outlines(&placed, outlines),
+        None => placed,
+    })
+}
+
+/// The drawings of a layer reflected and moved as their poses say, with all their holes. Those whose pose `kept` knows are taken from there.
+pub(super) fn placed_drawings(
     layer: &LayerSpec,
     kept: impl Fn(&DrawnPose) -> Option<Arc<Drawing>> + Sync,
 ) -> Result<Vec<Arc<Drawing>>, PipelineError> {
@@ -75,38 +85,47 @@ pub(super) fn used_drawings(
     let used: Vec<Result<Arc<Drawing>, InputError>> = (drawn.into_par_iter())
         .map(|pose| kept(pose).map_or_else(|| pose.as_used(), Ok))
         .collect();
-    let mut drawings = (used.into_iter().zip(layer.drawn_poses()))
+    (used.into_iter().zip(layer.drawn_poses()))
         .map(|(drawing, pose)| drawing.map_err(|source| refusal(layer, pose, source)))
-        .collect::<Result<Vec<_>, _>>()?;
-    if layer.unshared_holes == UnsharedHoles::Cover {
-        cover_unshared_holes(&mut drawings);
-    }
-    Ok(drawings)
+        .collect()
 }
 
-/// Makes openings of the holes that not all drawings have: the mesh covers them, and the texture's alpha opens and closes them. The others
-/// come to stand in one order.
-fn cover_unshared_holes(drawings: &mut [Arc<Drawing>]) {
-    if drawings.iter().all(|drawing| drawing.outline.holes().is_empty()) {
-        return;
+/// The outlines of drawings with the holes that not all of them have made openings: the mesh covers them, and the texture's alpha opens and closes
+/// them. The others come to stand in one order. `None` where the drawings keep all their holes.
+pub(super) fn covered_outlines(
+    layer: &LayerSpec,
+    drawings: &[Arc<Drawing>],
+) -> Result<Option<Vec<Outline>>, PipelineError> {
+    if layer.unshared_holes != UnsharedHoles::Cover || drawings.iter().all(|d| d.outline.holes().is_empty()) {
+        return Ok(None);
     }
     let outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
-    let shared = shared_holes(&outlines);
+    let ties = hole_ties(&layer.only_drawn(), &outlines)?;
+    let shared = shared_holes(&outlines, &ties);
     let is_every_hole = |outline: &Outline| outline.holes().len() == shared.len();
     if outlines.iter().all(is_every_hole) {
         // The order is that of the matching.
-        return;
+        return Ok(None);
     }
-    for (pose, drawing) in drawings.iter_mut().enumerate() {
+    let covered = outlines.iter().enumerate().map(|(pose, outline)| {
         let kept: Vec<usize> = shared.iter().map(|of_poses| of_poses[pose]).collect();
-        let outline = drawing.outline.with_holes_in_order(&kept);
-        if outline != drawing.outline {
-            *drawing = Arc::new(Drawing {
-                outline,
-                ..drawing.as_ref().clone()
-            });
+        outline.with_holes_in_order(&kept)
+    });
+    Ok(Some(covered.collect()))
+}
+
+/// The drawings with these outlines; those whose outline it is already are shared, not copied.
+pub(super) fn with_outlines(drawings: &[Arc<Drawing>], outlines: Vec<Outline>) -> Vec<Arc<Drawing>> {
+    let drawn = |(drawing, outline): (&Arc<Drawing>, Outline)| {
+        if outline == drawing.outline {
+            return Arc::clone(drawing);
         }
-    }
+        Arc::new(Drawing {
+            outline,
+            ..drawing.as_ref().clone()
+        })
+    };
+    drawings.iter().zip(outlines).map(drawn).collect()
 }
 
 /// Draws vector drawings again whose pictures are coarser than frames at `frame_scale` pixels a unit.

@@ -7,13 +7,14 @@ use rayon::prelude::*;
 use super::PipelineError;
 use super::boundaries::{Matched, match_refusal};
 use super::drawings::mirrored;
+use super::landmarks::{Landmarks, RimLandmark};
 use super::named::named_pairs;
+use super::rims::{match_hole, ordered_holes, tied_rims};
 use crate::appearance::{Appearance, Profile};
 use crate::compatible::Guide;
 use crate::input::Drawing;
-use crate::matching::{Landmark, MatchError, MatchOptions, MirrorHints, RingCandidates, RingMatch, surest_pairs};
+use crate::matching::{HoleTies, Landmark, MatchError, MatchOptions, MirrorHints, RingCandidates};
 use crate::math::Point;
-use crate::math::point::bounding_box;
 use crate::outline::{ArcLength, Outline, Ring};
 use crate::registration::{Explained, Pin, Registration, RingPairs, register};
 
@@ -52,12 +53,46 @@ pub(super) fn appearances(drawings: &[Arc<Drawing>]) -> Vec<Arc<Appearance>> {
         .collect()
 }
 
-/// What an artist says corresponds.
-pub(super) struct Known<'a> {
+/// What an artist says corresponds, besides lines.
+#[derive(Debug, PartialEq)]
+pub(super) struct Known {
     /// Points of the outer rings.
-    pub(super) landmarks: &'a [Landmark],
+    pub(super) on_outline: Vec<Landmark>,
+    /// Points of rims.
+    pub(super) on_rims: Vec<RimLandmark>,
+    /// What these say of the holes.
+    pub(super) ties: HoleTies,
     /// Points inside, #points x #poses.
-    pub(super) inside: &'a [Vec<Option<Point>>],
+    inside: Vec<Vec<Option<Point>>>,
+}
+
+impl Known {
+    pub(super) fn of(landmarks: &Landmarks) -> Self {
+        Self {
+            on_outline: landmarks.on_outline.clone(),
+            on_rims: landmarks.on_rims.clone(),
+            ties: landmarks.ties.clone(),
+            inside: landmarks.points.iter().map(|point| point.at.clone()).collect(),
+        }
+    }
+
+    /// The places of all of it, #landmarks x #poses; `outlines` have their holes in the drawings' order.
+    fn places(&self, outlines: &[Outline]) -> Vec<Vec<Option<Point>>> {
+        let arcs: Vec<Vec<ArcLength>> = (outlines.iter())
+            .map(|outline| outline.rings().iter().map(ArcLength::new).collect())
+            .collect();
+        let on_outline = self.on_outline.iter().map(|landmark| -> Vec<Option<Point>> {
+            let places = landmark.at.iter().zip(&arcs);
+            places.map(|(t, rings)| t.map(|t| rings[0].at(t))).collect()
+        });
+        let on_rims = self.on_rims.iter().map(|rim| -> Vec<Option<Point>> {
+            let places = rim.landmark.at.iter().zip(&rim.holes).zip(&arcs);
+            places
+                .map(|((t, hole), rings)| Some(rings[(*hole)? + 1].at((*t)?)))
+                .collect()
+        });
+        on_outline.chain(self.inside.iter().cloned()).chain(on_rims).collect()
+    }
 }
 
 /// Matches all rings and registers the interiors; what of that `before` has is not made again.
@@ -71,21 +106,26 @@ pub(super) fn match_by_drawing(
     mut options: MatchOptions,
 ) -> Result<(Matched, RegistrationGuide), PipelineError> {
     let refusal = |error: MatchError| match_refusal(names, error);
-    let &Known { landmarks, inside } = known;
+    let landmarks = &known.on_outline;
     let outer: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
     let mut candidates = proposed(&outer, appearances, landmarks, &options).map_err(refusal)?;
     let reference = candidates.reference();
     let poses = 0..outlines.len();
-    let beginnings: Vec<Vec<RingPairs>> = poses.clone().map(|pose| beginnings(&candidates, pose)).collect();
-    let arcs: Vec<ArcLength> = outer.iter().map(ArcLength::new).collect();
-    let on_outline = landmarks.iter().map(|landmark| -> Vec<Option<Point>> {
-        let places = landmark.at.iter().zip(&arcs);
-        places.map(|(t, arc)| t.map(|t| arc.at(t))).collect()
-    });
-    let known: Vec<Vec<Option<Point>>> = on_outline.chain(inside.iter().cloned()).collect();
+    let tied: Vec<RingPairs> = (poses.clone())
+        .map(|pose| {
+            if pose == reference {
+                return Ok(Vec::new());
+            }
+            tied_rims(names, outlines, appearances, known, reference, pose)
+        })
+        .collect::<Result<_, PipelineError>>()?;
+    let beginnings: Vec<Vec<RingPairs>> = (poses.clone().zip(&tied))
+        .map(|(pose, tied)| beginnings(&candidates, pose, tied))
+        .collect();
+    let places = known.places(outlines);
     let pins: Vec<Vec<Pin>> = poses
         .map(|pose| {
-            let certain = known
+            let certain = places
                 .iter()
                 .filter_map(|at| Some(Pin::certain(at[reference]?, at[pose]?)));
             let named = named_pairs(&drawings[reference], &drawings[pose]).into_iter();
@@ -117,7 +157,7 @@ pub(super) fn match_by_drawing(
         let shown = Arc::new(appearances[reference].without_colours());
         for pose in unlike {
             let both = [Arc::clone(&shown), Arc::clone(&plain[pose])];
-            let begins = [Vec::new(), self::beginnings(&candidates, pose)];
+            let begins = [Vec::new(), self::beginnings(&candidates, pose, &tied[pose])];
             let (by_form, chosen_of) = register(&both, 0, &begins, &[Vec::new(), pins[pose].clone()], None)
                 .map_err(|error| PipelineError::stage(names, Some(pose), error))?;
             registration.placed_as_in(pose, &by_form, 1);
@@ -136,19 +176,22 @@ pub(super) fn match_by_drawing(
                 looks_reflected(residual, &drawings[pose], &outer[reference], &appearances[reference])
             });
     }
-    order_holes(outlines, reference, &carried);
+    let rim_rings = ordered_holes(names, outlines, known, reference, &carried)?;
     let mut matched = Matched {
         reference,
         correspondences: vec![first.correspondence],
         outer: first.report,
         holes: Vec::new(),
+        rim_rings: rim_rings.clone(),
     };
     options.reference = Some(reference);
     options.mirror_hints = MirrorHints::Skip;
     options.turns_rad = first.turns_rad;
     for hole in 0..outlines.first().map_or(0, |outline| outline.holes().len()) {
         let rings: Vec<Ring> = outlines.iter().map(|outline| outline.holes()[hole].clone()).collect();
-        let of_hole = match_hole(&rings, appearances, &options, &carried).map_err(refusal)?;
+        let on_rim = known.on_rims.iter().zip(&rim_rings).filter(|(_, ring)| **ring == hole + 1);
+        let on_rim: Vec<Landmark> = on_rim.map(|(rim, _)| rim.landmark.clone()).collect();
+        let of_hole = match_hole(&rings, appearances, &on_rim, &options, &carried).map_err(refusal)?;
         matched.correspondences.push(of_hole.correspondence);
         matched.holes.push(of_hole.report);
     }
@@ -166,10 +209,13 @@ pub(super) fn is_found(explained: &Explained) -> bool {
     explained.share >= FOUND_SHARE
 }
 
-/// How a registration of `pose` may begin.
-fn beginnings(candidates: &RingCandidates, pose: usize) -> Vec<RingPairs> {
+/// How a registration of `pose` may begin, with rims that landmarks match.
+fn beginnings(candidates: &RingCandidates, pose: usize, tied: &RingPairs) -> Vec<RingPairs> {
     (0..candidates.count(pose))
-        .filter_map(|candidate| candidates.pairs(pose, candidate).map(|pair| vec![pair]))
+        .filter_map(|candidate| {
+            let outer = candidates.pairs(pose, candidate)?;
+            Some(std::iter::once(outer).chain(tied.iter().cloned()).collect())
+        })
         .collect()
 }
 
@@ -193,12 +239,13 @@ pub(super) fn residual(rings: &[Ring; 2], appearances: [&Arc<Appearance>; 2]) ->
         ..MatchOptions::default()
     };
     let candidates = proposed(rings, &appearances, &[], &options).ok()?;
-    let begins = vec![Vec::new(), beginnings(&candidates, 1)];
+    let begins = vec![Vec::new(), beginnings(&candidates, 1, &Vec::new())];
     let (registration, _) = register(&appearances, 0, &begins, &[], None).ok()?;
     registration.residual(1)
 }
 
-fn proposed(
+/// Proposed matches of rings of drawings.
+pub(super) fn proposed(
     rings: &[Ring],
     appearances: &[Arc<Appearance>],
     landmarks: &[Landmark],
@@ -208,50 +255,4 @@ fn proposed(
         .flat_map_iter(|(ring, appearance)| appearance.profiles(&[ring], PROFILE_SAMPLES))
         .collect();
     RingCandidates::new(rings, &profiles, landmarks, options)
-}
-
-/// Puts the holes of every pose in the order of the reference's: each where it is nearest to where that hole is carried, the surest first. A disc that
-/// is turned has its holes elsewhere.
-fn order_holes(outlines: &mut [Outline], reference: usize, carried: &dyn Fn(usize, Point) -> Option<Point>) {
-    let middle = |hole: &Ring| bounding_box(hole.points()).map(|(low, high)| (low + high) * 0.5);
-    let own: Vec<Option<Point>> = outlines[reference].holes().iter().map(middle).collect();
-    for (pose, outline) in outlines.iter_mut().enumerate().filter(|(pose, _)| *pose != reference) {
-        let places: Vec<Option<Point>> = outline.holes().iter().map(middle).collect();
-        let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
-        for (a, from) in own.iter().enumerate() {
-            let wanted = from.and_then(|from| carried(pose, from));
-            for (b, place) in places.iter().enumerate() {
-                let away = wanted
-                    .zip(*place)
-                    .map_or(f64::INFINITY, |(wanted, place)| (wanted - place).norm());
-                pairs.push((away, a, b));
-            }
-        }
-        let order = surest_pairs(pairs, [own.len(), places.len()]).into_iter().flatten();
-        *outline = outline.with_holes_in_order(&order.collect::<Vec<_>>());
-    }
-}
-
-/// The match of a hole that fits the registration best.
-fn match_hole(
-    rings: &[Ring],
-    appearances: &[Arc<Appearance>],
-    options: &MatchOptions,
-    carried: &(dyn Fn(usize, Point) -> Option<Point> + Sync),
-) -> Result<RingMatch, MatchError> {
-    let candidates = proposed(rings, appearances, &[], options)?;
-    let missed = |pose: usize, candidate: usize| -> f64 {
-        let Some((reference, own)) = candidates.pairs(pose, candidate) else {
-            return f64::INFINITY;
-        };
-        let pairs = reference.iter().zip(&own);
-        pairs.filter_map(|(a, b)| Some((carried(pose, *a)? - b).norm())).sum()
-    };
-    let chosen: Vec<usize> = (0..rings.len())
-        .map(|pose| {
-            let by_distance = |a: &usize, b: &usize| missed(pose, *a).total_cmp(&missed(pose, *b));
-            (0..candidates.count(pose)).min_by(by_distance).unwrap_or(0)
-        })
-        .collect();
-    candidates.settled(rings, &chosen, options, carried)
 }

@@ -74,6 +74,57 @@ pub enum PipelineError {
         /// Its place.
         y: f64,
     },
+    /// A landmark is on the rim of a hole in one pose, and somewhere else in another.
+    #[error(
+        "landmark '{landmark}': on pose '{pose}' it lies {place}, at ({x:.1}, {y:.1}), but on pose '{other}' {other_place}; put it on the same \
+         thing in every pose, or take it out of one of them"
+    )]
+    LandmarkPlaces {
+        /// Its name.
+        landmark: String,
+        /// A pose's name.
+        pose: String,
+        /// Where it is on that pose.
+        place: LandmarkPlace,
+        /// Its place there.
+        x: f64,
+        /// Its place there.
+        y: f64,
+        /// The other pose's name.
+        other: String,
+        /// Where it is on that one.
+        other_place: LandmarkPlace,
+    },
+    /// Landmarks on rims contradict one another about which hole is which.
+    #[error(
+        "landmarks '{first}' and '{second}' are on the rims of two holes of pose '{pose}', but {}; move one of them there to the hole of the other, or \
+         take it out of one of the poses",
+        match other {
+            Some(other) => format!("on the rim of one hole of pose '{other}'"),
+            None => "by further landmarks and poses these are one hole".to_owned(),
+        }
+    )]
+    LandmarkHoles {
+        /// A landmark.
+        first: String,
+        /// The other.
+        second: String,
+        /// The name of the pose where they are on two holes.
+        pose: String,
+        /// The name of the pose where they are on one; `None` if that follows from several poses.
+        other: Option<String>,
+    },
+    /// A landmark on a rim is not given in the reference, all of whose holes are others.
+    #[error(
+        "landmark '{landmark}' is on the rim of a hole, but no hole of pose '{pose}', which has no place for it, is left to be that hole; give it a \
+         place there, too"
+    )]
+    LandmarkWithoutHole {
+        /// Its name.
+        landmark: String,
+        /// The name of the reference.
+        pose: String,
+    },
     /// A landmark inside the shape is not given in every pose, and there is no room where it should be.
     #[error(
         "landmark '{landmark}' lies inside the shape, but pose '{pose}' has neither a place for it nor room where it should be; give it one"
@@ -212,6 +263,34 @@ pub enum PipelineError {
     Texture(#[from] TextureError),
 }
 
+/// What kind of place of a pose a landmark is at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LandmarkPlace {
+    /// The outer outline.
+    Outline,
+    /// The rim of a hole.
+    Rim,
+    /// The rim of a hole that not every pose has: the mesh covers it.
+    CoveredRim,
+    /// Inside the shape.
+    Inside,
+    /// Outside of the shape, or in the middle of a hole.
+    Nowhere,
+}
+
+impl std::fmt::Display for LandmarkPlace {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Outline => "on the outer outline",
+            Self::Rim => "on the rim of a hole",
+            Self::CoveredRim => "on the rim of a hole that not every pose has",
+            Self::Inside => "inside the shape",
+            Self::Nowhere => "outside of the shape",
+        })
+    }
+}
+
 impl PipelineError {
     /// The layer that it is about, where one is named.
     #[must_use]
@@ -236,6 +315,8 @@ impl PipelineError {
     pub fn landmark(&self) -> Option<&str> {
         match self.within_layer() {
             Self::LandmarkOffOutline { landmark, .. }
+            | Self::LandmarkPlaces { landmark, .. }
+            | Self::LandmarkWithoutHole { landmark, .. }
             | Self::LandmarkMissing { landmark, .. }
             | Self::LandmarkOutside { landmark, .. }
             | Self::LandmarkCrossesItself { landmark, .. }
@@ -243,7 +324,9 @@ impl PipelineError {
             | Self::LandmarkSides { landmark, .. }
             | Self::LandmarkOrder { landmark, .. }
             | Self::LandmarkNowhere { landmark } => Some(landmark),
-            Self::LandmarksMeet { second, .. } | Self::LandmarksCoincide { second, .. } => Some(second),
+            Self::LandmarksMeet { second, .. }
+            | Self::LandmarksCoincide { second, .. }
+            | Self::LandmarkHoles { second, .. } => Some(second),
             _ => None,
         }
     }
@@ -255,6 +338,9 @@ impl PipelineError {
             Self::Drawing { pose, .. }
             | Self::HoleCount { pose, .. }
             | Self::LandmarkOffOutline { pose, .. }
+            | Self::LandmarkPlaces { pose, .. }
+            | Self::LandmarkHoles { pose, .. }
+            | Self::LandmarkWithoutHole { pose, .. }
             | Self::LandmarkMissing { pose, .. }
             | Self::LandmarkOutside { pose, .. }
             | Self::LandmarksMeet { pose, .. }

@@ -1,7 +1,7 @@
-//! A layer's landmarks, sorted: on the outlines, points inside, lines inside; and where they go in the poses that
+//! A layer's landmarks, sorted: on the outlines, on rims of holes, points inside, lines inside; and where they go in the poses that
 //! lack them.
 //!
-//! An end of a line that lies at the outline in every pose is an outline landmark, too: it guides the matching, and the
+//! Landmarks on rims say which hole is which, too. An end of a line that lies at the outline in every pose is an outline landmark, too: it guides the matching, and the
 //! line is joined to the outline's vertex there.
 
 use std::sync::Arc;
@@ -11,37 +11,44 @@ use rayon::prelude::*;
 use super::PipelineError;
 use super::inside::Obstacles;
 use super::landmark_path;
+use super::landmark_ring::{Found, MarkedRing, MeasuredOutline, Nearest, marked_ring, tie_refusal};
 use super::note::{Note, NoteKind};
 use super::sides::Sides;
 use super::spec::LayerSpec;
 use crate::compatible::{CompatibleMesh, FeaturePath, Features, PathEnd};
 use crate::input::Drawing;
-use crate::matching::Landmark;
-use crate::math::{Point, point};
-use crate::outline::{ArcLength, Outline, parameter_gap};
+use crate::matching::{HoleTies, Landmark};
+use crate::math::Point;
+use crate::outline::{Outline, parameter_gap};
 use crate::pose::{LandmarkKind, PlacedLandmark};
-
-/// How far a landmark may lie from the outline it is snapped to, as a fraction of the pose's diagonal: a few times the
-/// width of an ink line.
-const LANDMARK_REACH: f64 = 0.03;
-
-/// A landmark that in every pose lies inside the shape by more than this, as a fraction of the diagonal, is an interior
-/// one: about the width of an ink line.
-pub const INTERIOR_DEPTH: f64 = 0.01;
 
 /// Ends of lines nearer than this to an outline landmark in every pose, in perimeters, are that landmark.
 const SAME_PLACE: f64 = 2e-3;
-
-/// A landmark this near to a vertex of the outline, in perimeters, is at that vertex: half a pixel of an outline of two
-/// thousand. The mesh has vertices at both, and the edge between would be as short as what the artist's decimals leave.
-const CORNER_REACH: f64 = 2.5e-4;
 
 /// All landmarks of a layer. Places are those of the drawings as they are used: reflected where the pose is.
 pub(super) struct Landmarks {
     /// On the outer rings, ends of lines included.
     pub(super) on_outline: Vec<Landmark>,
+    /// On rims of holes.
+    pub(super) on_rims: Vec<RimLandmark>,
+    /// What these say of the holes.
+    pub(super) ties: HoleTies,
     pub(super) points: Vec<InteriorPoint>,
     pub(super) paths: Vec<InteriorPath>,
+}
+
+/// A landmark on the rim of a hole.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct RimLandmark {
+    /// Its name, and its parameter on the hole's ring in every pose that has it.
+    pub(super) landmark: Landmark,
+    /// Which of the pose's holes that is, in the drawing's order.
+    pub(super) holes: Vec<Option<usize>>,
+}
+
+/// The names of landmarks on rims.
+pub(super) fn rim_names(on_rims: &[RimLandmark]) -> Vec<&str> {
+    on_rims.iter().map(|rim| rim.landmark.name.as_str()).collect()
 }
 
 /// A point inside.
@@ -63,18 +70,17 @@ pub(super) struct InteriorPath {
 /// # Errors
 /// [`PipelineError`] if a landmark has no place, or is neither inside nor at the outline.
 pub(super) fn sorted(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Landmarks, PipelineError> {
-    let measured: Vec<(ArcLength, f64)> = (drawings.iter())
-        .map(|drawing| {
-            let outer = drawing.outline.outer();
-            (ArcLength::new(outer), point::diagonal(outer.points()))
-        })
+    let measured: Vec<MeasuredOutline> = (drawings.iter())
+        .map(|drawing| MeasuredOutline::new(&drawing.outline))
         .collect();
-    let look = |pose: usize, place: Point| Found::new(layer, drawings, &measured, pose, place);
+    let look = |pose: usize, place: Point| Found::new(layer, &measured[pose], pose, place);
     let nowhere = |landmark: &String| PipelineError::LandmarkNowhere {
         landmark: landmark.clone(),
     };
     let mut sorted = Landmarks {
         on_outline: Vec::new(),
+        on_rims: Vec::new(),
+        ties: HoleTies::default(),
         points: Vec::new(),
         paths: Vec::new(),
     };
@@ -91,14 +97,27 @@ pub(super) fn sorted(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Lan
         if found.iter().all(Option::is_none) {
             return Err(nowhere(&name));
         }
-        if found.iter().flatten().all(Found::is_deep) {
-            let at = found.iter().map(|found| found.as_ref().map(|f| f.place)).collect();
-            sorted.points.push(InteriorPoint { name, at });
-        } else {
-            let at = snapped(layer, &name, &found)?;
-            sorted.on_outline.push(Landmark { name, at });
+        match marked_ring(layer, &name, &found, &measured)? {
+            None => {
+                let at = found.iter().map(|found| found.as_ref().map(|f| f.place)).collect();
+                sorted.points.push(InteriorPoint { name, at });
+            }
+            Some(MarkedRing::Outer) => {
+                let at = found.iter().map(|found| Some(found.as_ref()?.outer.parameter)).collect();
+                sorted.on_outline.push(Landmark { name, at });
+            }
+            Some(MarkedRing::Rim) => {
+                let rims: Vec<Option<Nearest>> = found.iter().map(|found| found.as_ref()?.rim).collect();
+                let at = rims.iter().map(|rim| Some((*rim)?.parameter)).collect();
+                sorted.on_rims.push(RimLandmark {
+                    landmark: Landmark { name, at },
+                    holes: rims.iter().map(|rim| Some((*rim)?.ring - 1)).collect(),
+                });
+            }
         }
     }
+    let marks: Vec<Vec<Option<usize>>> = sorted.on_rims.iter().map(|rim| rim.holes.clone()).collect();
+    sorted.ties = HoleTies::new(&marks).map_err(|error| tie_refusal(&layer.names(), &rim_names(&sorted.on_rims), error))?;
     for path in &layer.paths {
         let name = path.name.clone();
         if path.at.iter().all(Option::is_none) {
@@ -113,13 +132,20 @@ pub(super) fn sorted(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Lan
                     Some(look(pose, *place?))
                 })
                 .collect();
-            let within_reach = found.iter().flatten().all(|f| f.distance <= LANDMARK_REACH * f.size);
+            let within_reach = found.iter().flatten().all(Found::is_at_outer);
             let is_inside = found.iter().flatten().all(|f| f.inside);
-            if found.iter().flatten().all(Found::is_deep) || (is_inside && !within_reach) {
+            if found.iter().flatten().all(Found::is_inward) || (is_inside && !within_reach) {
                 continue;
             }
             let name = format!("{name} ({word})");
-            let at = snapped(layer, &name, &found)?;
+            let stray = found.iter().enumerate().find_map(|(pose, found)| {
+                let found = found.as_ref().filter(|found| !found.is_at_outer())?;
+                Some(found.off_outline(layer, &name, pose))
+            });
+            if let Some(refusal) = stray {
+                return Err(refusal);
+            }
+            let at = found.iter().map(|found| Some(found.as_ref()?.outer.parameter)).collect();
             ends[end] = Some(sorted.on_outline_at(Landmark { name, at }));
         }
         let place = |pose: usize, points: &Vec<Point>| -> Vec<Point> {
@@ -158,12 +184,14 @@ impl Landmarks {
         number
     }
 
-    /// All landmarks on every pose of the finished mesh: those on the outline, points inside, lines. `anchors` are the places
-    /// of the first (#landmarks x #poses).
+    /// All landmarks on every pose of the finished mesh: those on the outline, on rims, points inside, lines. `anchors` are the places
+    /// of the first two (#landmarks x #poses).
     pub(super) fn placed(&self, anchors: &[Vec<Point>], mesh: &CompatibleMesh) -> Vec<PlacedLandmark> {
-        let on_outline = self.on_outline.iter().zip(anchors).map(|(landmark, places)| {
+        let on_outline = self.on_outline.iter().map(|own| (own, LandmarkKind::OnOutline));
+        let on_rims = self.on_rims.iter().map(|own| (&own.landmark, LandmarkKind::OnRim));
+        let on_rings = on_outline.chain(on_rims).zip(anchors).map(|((landmark, kind), places)| {
             let at = places.iter().map(|place| vec![*place]).collect();
-            placed(&landmark.name, LandmarkKind::OnOutline, at, &landmark.at)
+            placed(&landmark.name, kind, at, &landmark.at)
         });
         let along = |vertices: &[usize]| -> Vec<Vec<Point>> {
             let places = |positions: &Vec<Point>| vertices.iter().map(|&v| positions[v]).collect();
@@ -179,12 +207,12 @@ impl Landmarks {
             .iter()
             .zip(&mesh.paths)
             .map(|(path, vertices)| placed(&path.name, LandmarkKind::Line, along(vertices), &path.at));
-        on_outline.chain(inside).chain(lines).collect()
+        on_rings.chain(inside).chain(lines).collect()
     }
 
     /// What the triangulation has to meet inside `polygons`: lines simplified to `tolerance` (of the diagonals), and
     /// everything placed in the poses that lack it. `anchors` are the places of the outline landmarks (#landmarks x
-    /// #poses). Notes say what was placed.
+    /// #poses), and of those on rims. Notes say what was placed.
     pub(super) fn features(
         &self,
         layer: &LayerSpec,
@@ -321,68 +349,4 @@ pub(super) fn as_drawn(layer: &LayerSpec, pose: usize, place: Point) -> Point {
         .drawn()
         .nth(pose)
         .map_or(place, |source| source.drawn_place(place))
-}
-
-/// The parameters of an outline landmark.
-fn snapped(layer: &LayerSpec, landmark: &str, found: &[Option<Found>]) -> Result<Vec<Option<f64>>, PipelineError> {
-    for (pose, found) in found.iter().enumerate() {
-        if let Some(found) = found.as_ref().filter(|f| f.distance > LANDMARK_REACH * f.size) {
-            return Err(PipelineError::LandmarkOffOutline {
-                landmark: landmark.to_owned(),
-                pose: layer.poses[pose].name.clone(),
-                distance: found.distance,
-                largest: LANDMARK_REACH * found.size,
-                x: found.place.x,
-                y: found.place.y,
-            });
-        }
-    }
-    Ok(found.iter().map(|found| found.as_ref().map(|f| f.parameter)).collect())
-}
-
-/// A landmark's place on one pose.
-struct Found {
-    place: Point,
-    /// Of the nearest point of the outline, or a vertex beside it.
-    parameter: f64,
-    /// To that point, in source units.
-    distance: f64,
-    inside: bool,
-    /// The pose's diagonal.
-    size: f64,
-}
-
-impl Found {
-    fn new(
-        layer: &LayerSpec,
-        drawings: &[Arc<Drawing>],
-        measured: &[(ArcLength, f64)],
-        pose: usize,
-        place: Point,
-    ) -> Self {
-        let place = as_used(layer, pose, place);
-        let (curve, size) = &measured[pose];
-        let (nearest, distance) = curve.nearest(place);
-        // Of the vertices, the nearer end of the edge that it lies on.
-        let corners = curve.vertex_parameters();
-        let (edge, _) = curve.locate(nearest);
-        let ends = [edge, (edge + 1) % corners.len()].map(|vertex| corners[vertex]);
-        let corner = ends
-            .into_iter()
-            .min_by(|a, b| parameter_gap(*a, nearest).total_cmp(&parameter_gap(*b, nearest)));
-        let parameter = corner
-            .filter(|t| parameter_gap(*t, nearest) <= CORNER_REACH)
-            .unwrap_or(nearest);
-        Self {
-            place,
-            parameter,
-            distance,
-            inside: drawings[pose].outline.contains(place),
-            size: *size,
-        }
-    }
-
-    fn is_deep(&self) -> bool {
-        self.inside && self.distance > INTERIOR_DEPTH * self.size
-    }
 }

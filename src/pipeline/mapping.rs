@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::boundaries::Boundaries;
 use super::drawings::used_drawings;
-use super::drawn::is_found;
+use super::drawn::{Known, is_found};
 use super::landmarks::{self, Landmarks};
 use super::note::{Note, NoteKind};
 use super::spec::{LayerRole, LayerSpec};
@@ -50,7 +50,7 @@ pub fn map_layer_observed(
     layer.check()?;
     // The stages hand thousands of small tasks to the thread pool; from outside it, each would put this thread to sleep.
     rayon::scope(|_| {
-        let drawings = used_drawings(layer, |_| None)?;
+        let drawings = used_drawings(layer)?;
         let (mapping, mut report, _) = map_drawn(&layer.only_drawn(), &drawings, None, begins)?;
         let mapping = deformed::with_copies(layer, mapping, &mut report)?;
         Ok((mapping, report))
@@ -89,20 +89,10 @@ fn map_drawn(
     check_hole_counts(&names, drawings)?;
     let landmarks = landmarks::sorted(layer, drawings)?;
 
-    let inside: Vec<Vec<Option<Point>>> = landmarks.points.iter().map(|point| point.at.clone()).collect();
-    let boundaries = match before.filter(|before| before.serve(layer, &landmarks.on_outline, &inside)) {
+    let known = Known::of(&landmarks);
+    let boundaries = match before.filter(|before| before.serve(layer, &known)) {
         Some(same) => Arc::clone(same),
-        None => {
-            let before = before.map(Arc::as_ref);
-            Arc::new(Boundaries::new(
-                layer,
-                drawings,
-                &landmarks.on_outline,
-                &inside,
-                before,
-                begins,
-            )?)
-        }
+        None => Arc::new(Boundaries::new(layer, drawings, known, before.map(Arc::as_ref), begins)?),
     };
     let Boundaries {
         outlines,
@@ -123,10 +113,14 @@ fn map_drawn(
     let mut simplified = boundaries.simplified.clone();
 
     begins(Stage::Triangulation);
-    let measured: Vec<ArcLength> = outlines.iter().map(|outline| ArcLength::new(outline.outer())).collect();
-    let anchors: Vec<Vec<Point>> = pinned
-        .iter()
-        .map(|at| at.iter().zip(&measured).map(|(&t, outline)| outline.at(t)).collect())
+    let measured: Vec<Vec<ArcLength>> = (outlines.iter())
+        .map(|outline| outline.rings().iter().map(ArcLength::new).collect())
+        .collect();
+    let anchors: Vec<Vec<Point>> = (pinned.iter())
+        .map(|row| {
+            let places = row.iter().zip(&measured);
+            places.map(|(at, rings)| rings[at.ring].at(at.parameter)).collect()
+        })
         .collect();
     let triangulated = |polygons: &[Outline], effort| bare_mesh(layer, polygons, &landmarks, &anchors, effort);
     let mut bare = triangulated(&simplified.polygons, Effort::Full)?;

@@ -5,8 +5,10 @@ use crate::math::Point;
 /// What a landmark marks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LandmarkKind {
-    /// A point of the outline: it guides the matching.
+    /// A point of the outer outline: it guides the matching.
     OnOutline,
+    /// A point of a hole's rim: it guides the matching, and says which hole that is.
+    OnRim,
     /// A point inside the shape: a vertex of the mesh.
     Inside,
     /// A line inside the shape: a chain of edges of the mesh.

@@ -61,7 +61,7 @@ impl Scene {
                     (LandmarkKind::Line, [_, _, ..]) if is_line(&landmark.name) => {
                         newcomer.paths.push((landmark.name.clone(), places));
                     }
-                    (LandmarkKind::OnOutline | LandmarkKind::Inside, [place])
+                    (LandmarkKind::OnOutline | LandmarkKind::OnRim | LandmarkKind::Inside, [place])
                         if own.landmarks.iter().any(|own| own.name == landmark.name) =>
                     {
                         newcomer.landmarks.push((landmark.name.clone(), *place));

@@ -18,6 +18,7 @@ mod layers;
 mod long_work;
 mod mapping_report;
 mod parts;
+mod rims;
 mod scenes;
 mod separate;
 mod shape;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::collapse::Collapser;
 use super::original::{OriginalRing, PoseOriginal};
 use super::tuples::{Pin, TupleRing};
-use super::{SimplifyError, SimplifyOptions};
+use super::{RingPoint, SimplifyError, SimplifyOptions};
 use crate::outline::{Outline, Ring};
 
 /// How much finer than the tolerance each outline alone is simplified first: fine enough that the joint step, not
@@ -29,14 +29,14 @@ pub struct SimplifiedAlone {
 }
 
 impl SimplifiedAlone {
-    /// Simplifies those of the outlines whose landmarks all have a place: `landmarks` are #landmarks x #poses, each a parameter
-    /// of the outer ring. What is in `before` already is taken from there.
+    /// Simplifies those of the outlines whose landmarks all have a place: `landmarks` are #landmarks x #poses. What is in `before` already is
+    /// taken from there.
     ///
     /// # Errors
     /// [`SimplifyError::BadTolerance`].
     pub fn new(
         outlines: &[Outline],
-        landmarks: &[Vec<Option<f64>>],
+        landmarks: &[Vec<Option<RingPoint>>],
         options: &SimplifyOptions,
         before: &Self,
     ) -> Result<Self, SimplifyError> {
@@ -72,7 +72,7 @@ impl SimplifiedAlone {
 pub(super) struct PoseAlone {
     pub(super) outline: Outline,
     pub(super) original: PoseOriginal,
-    /// The landmarks on its outer ring.
+    /// The landmarks on its rings.
     pub(super) pins: Vec<Pin>,
     /// Its rings, simplified alone.
     pub(super) rings: Vec<TupleRing>,
@@ -83,11 +83,11 @@ fn mean_half_width(outline: &Outline) -> f64 {
     outline.area() / outline.rings().iter().map(Ring::perimeter).sum::<f64>()
 }
 
-/// The landmarks of one pose, of which `places` has a parameter each, if it is known.
-pub(super) fn pins(places: impl Iterator<Item = Option<f64>>) -> impl Iterator<Item = Option<Pin>> {
+/// The landmarks of one pose, of which `places` has one each, if it is known.
+pub(super) fn pins(places: impl Iterator<Item = Option<RingPoint>>) -> impl Iterator<Item = Option<Pin>> {
     places.enumerate().map(|(landmark, place)| {
-        let parameter = place?;
-        Some(Pin { landmark, parameter })
+        let at = place?;
+        Some(Pin { landmark, at })
     })
 }
 
@@ -98,7 +98,7 @@ impl PoseAlone {
             rings: outline.rings().iter().map(OriginalRing::new).collect(),
             size: outline.diagonal().min(THIN_SHAPE * mean_half_width(outline)),
         };
-        let single = |(ring, points): (usize, &Ring)| TupleRing::single(points, if ring == 0 { &pins } else { &[] });
+        let single = |(ring, points): (usize, &Ring)| TupleRing::single(points, ring, &pins);
         let single = outline.rings().iter().enumerate().map(single).collect();
         let mut rings = Collapser::new(single, &[&original], tolerance).run();
         for ring in &mut rings {

@@ -52,6 +52,15 @@ use drift::Drift;
 use original::PoseOriginal;
 use tuples::{Pin, TupleRing};
 
+/// A point of an outline: a landmark's place on one pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RingPoint {
+    /// On which ring; 0 is the outer one, hole `k` is ring `k + 1`.
+    pub ring: usize,
+    /// Its normalised arc-length parameter there, in `[0, 1)`.
+    pub parameter: f64,
+}
+
 /// What the simplification may do.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -166,8 +175,8 @@ const LARGEST_WEIGHT: f64 = 4.0;
 
 /// Simplifies N outlines to N polygons with corresponding vertices that enclose them.
 ///
-/// `correspondences` holds one correspondence a ring, outer ring first; `landmarks` the boundary landmarks of the outer
-/// ring, as rows of parameters, one a pose, that correspond: each becomes a vertex, where it is on every pose.
+/// `correspondences` holds one correspondence a ring, outer ring first; `landmarks` the landmarks on the rings, as rows of points, one a
+/// pose, that correspond, all on the same ring: each becomes a vertex, where it is on every pose.
 ///
 /// # Examples
 /// ```
@@ -193,7 +202,7 @@ const LARGEST_WEIGHT: f64 = 4.0;
 pub fn simplify(
     outlines: &[Outline],
     correspondences: &[Correspondence],
-    landmarks: &[Vec<f64>],
+    landmarks: &[Vec<RingPoint>],
     options: &SimplifyOptions,
 ) -> Result<Simplified, SimplifyError> {
     Simplification::new(outlines, correspondences, landmarks, options)?.polygons()
@@ -262,7 +271,7 @@ impl Simplification {
     pub fn new(
         outlines: &[Outline],
         correspondences: &[Correspondence],
-        landmarks: &[Vec<f64>],
+        landmarks: &[Vec<RingPoint>],
         options: &SimplifyOptions,
     ) -> Result<Self, SimplifyError> {
         Self::with(
@@ -282,7 +291,7 @@ impl Simplification {
     pub fn with(
         outlines: &[Outline],
         correspondences: &[Correspondence],
-        landmarks: &[Vec<f64>],
+        landmarks: &[Vec<RingPoint>],
         options: &SimplifyOptions,
         alone: &SimplifiedAlone,
     ) -> Result<Self, SimplifyError> {

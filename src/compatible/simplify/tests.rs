@@ -30,6 +30,10 @@ fn escape(outline: &Outline, polygon: &Outline) -> f64 {
     outline.outer().points().iter().map(outside).fold(0.0, f64::max) / outline.diagonal()
 }
 
+fn on_ring(ring: usize, parameter: f64) -> RingPoint {
+    RingPoint { ring, parameter }
+}
+
 #[test]
 fn a_square_with_points_along_its_sides_becomes_four_vertices() {
     let side = |k: usize| k as f64 / 10.0;
@@ -61,7 +65,7 @@ fn a_landmark_survives_where_it_would_be_collapsed() {
         &[],
         &SimplifyOptions::default(),
     );
-    let rows: Vec<Vec<f64>> = (0..40).map(|k| vec![f64::from(k) / 40.0; 2]).collect();
+    let rows: Vec<Vec<RingPoint>> = (0..40).map(|k| vec![on_ring(0, f64::from(k) / 40.0); 2]).collect();
     let pinned = simplify(
         &outlines,
         &[Correspondence::identity(2, 64)],
@@ -137,7 +141,10 @@ fn leak(outline: &Outline, polygon: &Outline) -> f64 {
 fn prove(outlines: &[Outline], landmarks: &[f64], tolerance: f64) -> Result<(), TestCaseError> {
     let identity = |_| Correspondence::identity(outlines.len(), 64);
     let correspondences: Vec<Correspondence> = outlines[0].rings().iter().map(identity).collect();
-    let pinned: Vec<Vec<f64>> = landmarks.iter().map(|&t| vec![t; outlines.len()]).collect();
+    // On one ring after the other.
+    let landmarks = landmarks.iter().enumerate();
+    let landmarks: Vec<RingPoint> = landmarks.map(|(k, &t)| on_ring(k % correspondences.len(), t)).collect();
+    let pinned: Vec<Vec<RingPoint>> = landmarks.iter().map(|&at| vec![at; outlines.len()]).collect();
     let options = SimplifyOptions::default().with_tolerance(tolerance);
     // `Outline::new` inside has already proven each polygon simple.
     let simplified = simplify(outlines, &correspondences, &pinned, &options)
@@ -148,13 +155,15 @@ fn prove(outlines: &[Outline], landmarks: &[f64], tolerance: f64) -> Result<(), 
         let leaked = leak(outline, polygon);
         prop_assert!(leaked < 1e-9, "leaks {leaked}");
     }
-    for &t in landmarks {
+    for RingPoint { ring, parameter } in landmarks {
         let is_there = |k: usize| {
             let mut each = simplified.polygons.iter().zip(outlines);
-            each.all(|(polygon, outline)| polygon.outer().point(k) == ArcLength::new(outline.outer()).at(t))
+            each.all(|(polygon, outline)| {
+                polygon.rings()[ring].point(k) == ArcLength::new(&outline.rings()[ring]).at(parameter)
+            })
         };
-        let is_vertex = (0..simplified.polygons[0].outer().len()).any(is_there);
-        prop_assert!(is_vertex, "the landmark at {t} has no vertex");
+        let is_vertex = (0..simplified.polygons[0].rings()[ring].len()).any(is_there);
+        prop_assert!(is_vertex, "the landmark at {parameter} of ring {ring} has no vertex");
     }
     Ok(())
 }
@@ -166,7 +175,7 @@ fn a_landmark_in_the_middle_of_a_side_stays_there() {
     let simplified = simplify(
         &[outline.clone(), outline],
         &[Correspondence::identity(2, 64)],
-        &[vec![0.125; 2]],
+        &[vec![on_ring(0, 0.125); 2]],
         &SimplifyOptions::default(),
     )
     .expect("simplified");
@@ -274,7 +283,8 @@ fn what_has_not_changed_is_taken_over_and_what_has_is_not() {
     let outlines = [0.0, 1.5, 3.0].map(|phase| wavy(200, 5, 0.4, phase));
     let matching = [Correspondence::identity(3, 200)];
     let options = SimplifyOptions::default();
-    let landmarks = |second: f64| vec![vec![0.1, 0.1, 0.1], vec![0.5, second, 0.5]];
+    let first = vec![on_ring(0, 0.1); 3];
+    let landmarks = |second: f64| vec![first.clone(), [0.5, second, 0.5].map(|t| on_ring(0, t)).to_vec()];
     let before = Simplification::new(&outlines, &matching, &landmarks(0.5), &options).expect("simplified");
     let mut others = outlines.clone();
     others[2] = wavy(200, 5, 0.3, 2.0);
@@ -282,7 +292,10 @@ fn what_has_not_changed_is_taken_over_and_what_has_is_not() {
         let options = SimplifyOptions::default().with_tolerance(tolerance);
         let anew = simplify(outlines, &matching, &landmarks(second), &options).expect("simplified");
         // Where one pose's landmark is not known yet, that pose is left for later.
-        let known = [vec![Some(0.1); 3], vec![Some(0.5), Some(second), None]];
+        let known = [
+            vec![Some(on_ring(0, 0.1)); 3],
+            vec![Some(on_ring(0, 0.5)), Some(on_ring(0, second)), None],
+        ];
         let ahead = SimplifiedAlone::new(outlines, &known, &options, &before.alone()).expect("simplified");
         for alone in [before.alone(), ahead] {
             let again = Simplification::with(outlines, &matching, &landmarks(second), &options, &alone);

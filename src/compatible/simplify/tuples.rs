@@ -1,5 +1,6 @@
 //! Rings of corresponding vertices: what the simplification works on.
 
+use super::RingPoint;
 use crate::matching::Correspondence;
 use crate::math::{Point, point, wrapped};
 use crate::outline::{ArcLength, Ring, parameter_gap};
@@ -21,13 +22,13 @@ pub(super) struct Tuple {
     pub(super) landmark: Option<usize>,
 }
 
-/// A landmark on one pose's ring.
+/// A landmark on one of a pose's rings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Pin {
     /// Which one; the same on every pose.
     pub(super) landmark: usize,
-    /// Its parameter on this pose.
-    pub(super) parameter: f64,
+    /// Its place on this pose.
+    pub(super) at: RingPoint,
 }
 
 /// Stations whose row coordinates differ by no more are at the same place: a few thousand times what rounding does to a
@@ -44,12 +45,13 @@ struct Station {
 }
 
 impl TupleRing {
-    /// The vertices of one pose's ring, as tuples of one.
-    pub(super) fn single(ring: &Ring, pins: &[Pin]) -> Self {
+    /// The vertices of one pose's ring, its ring `number`, as tuples of one, with those of the pose's landmarks that are on it.
+    pub(super) fn single(ring: &Ring, number: usize, pins: &[Pin]) -> Self {
         let arc = ArcLength::new(ring);
         let vertices = arc.vertex_parameters().iter().map(|&t| (t, None));
         let mut stations: Vec<(f64, Option<usize>)> = vertices.collect();
-        stations.extend(pins.iter().map(|pin| (pin.parameter, Some(pin.landmark))));
+        let pins = pins.iter().filter(|pin| pin.at.ring == number);
+        stations.extend(pins.map(|pin| (pin.at.parameter, Some(pin.landmark))));
         // Landmarks first where parameters are equal.
         let is_vertex = |station: &(f64, Option<usize>)| station.1.is_none();
         stations.sort_by(|a, b| a.0.total_cmp(&b.0).then(is_vertex(a).cmp(&is_vertex(b))));
@@ -250,7 +252,7 @@ mod tests {
     fn joining_keeps_every_vertex_of_every_pose() {
         let square = Ring::new([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(Point::from)).expect("a ring");
         let diamond = Ring::new([[1.0, 0.0], [2.0, 1.0], [1.0, 2.0], [0.0, 1.0]].map(Point::from)).expect("a ring");
-        let singles = [TupleRing::single(&square, &[]), TupleRing::single(&diamond, &[])];
+        let singles = [TupleRing::single(&square, 0, &[]), TupleRing::single(&diamond, 0, &[])];
         let shifted =
             Correspondence::new(vec![vec![0.0, 0.125], vec![0.5, 0.625], vec![0.75, 0.875]]).expect("monotone");
         let joined = TupleRing::joined(&singles, &shifted, 0.0);

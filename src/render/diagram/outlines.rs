@@ -1,4 +1,4 @@
-//! The outlines in correspondence: numbered links, salient points, landmarks, and where the match is doubtful.
+//! The outlines in correspondence: numbered links and landmarks on rims, salient points, landmarks, and where the match is doubtful.
 
 use tiny_skia::Color;
 
@@ -30,6 +30,7 @@ const ASIDE: f64 = 0.004;
 struct Placed<'a> {
     cell: &'a Cell,
     curve: ArcLength,
+    holes: Vec<ArcLength>,
 }
 
 impl Placed<'_> {
@@ -48,7 +49,19 @@ impl Placed<'_> {
 
     /// Away from the shape: outlines are positive, so the inside is a positive quarter turn from the way along.
     fn outward(&self, t: f64) -> Point {
-        -point::perpendicular(self.at(t + ASIDE) - self.at(t - ASIDE))
+        self.aside(&self.curve, t)
+    }
+
+    /// The same at the rim nearest to a place of the pose: into the hole, which runs the other way round.
+    fn into_hole(&self, place: Point) -> Option<Point> {
+        let nearest = self.holes.iter().map(|rim| (rim, rim.nearest(place)));
+        let (rim, (t, _)) = nearest.min_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
+        Some(self.aside(rim, t))
+    }
+
+    fn aside(&self, curve: &ArcLength, t: f64) -> Point {
+        let [before, after] = [t - ASIDE, t + ASIDE].map(|t| self.cell.fit.place(curve.at(t)));
+        -point::perpendicular(after - before)
     }
 }
 
@@ -62,6 +75,7 @@ pub(super) fn draw(canvas: &mut Canvas, diagram: &Diagram, sections: &Sections, 
         .map(|(outline, cell)| Placed {
             cell,
             curve: ArcLength::new(outline.outer()),
+            holes: outline.holes().iter().map(ArcLength::new).collect(),
         })
         .collect();
     let share = |k: usize| k as f64 / sections.links().len().max(1) as f64;
@@ -69,6 +83,13 @@ pub(super) fn draw(canvas: &mut Canvas, diagram: &Diagram, sections: &Sections, 
         let places: Vec<Point> = placed.iter().zip(&link.at).map(|(pose, t)| pose.at(*t)).collect();
         for row in places.chunks(columns.max(1)) {
             canvas.line(row, 0.8, faint(hue(share(k), 0.62)));
+        }
+    }
+    for landmark in on_rims(diagram) {
+        let at = placed.iter().zip(&landmark.at);
+        let places: Vec<Point> = at.filter_map(|(pose, at)| Some(pose.cell.fit.place(*at.first()?))).collect();
+        for row in places.chunks(columns.max(1)) {
+            canvas.line(row, 0.8, faint(INK));
         }
     }
     for (pose, here) in placed.iter().enumerate() {
@@ -87,6 +108,11 @@ pub(super) fn draw(canvas: &mut Canvas, diagram: &Diagram, sections: &Sections, 
         }
         draw_labels(canvas, diagram, sections, here, pose, &mut labels);
     }
+}
+
+/// The landmarks on rims of holes, whose numbers follow those of the links.
+fn on_rims<'a>(diagram: &'a Diagram) -> impl Iterator<Item = &'a PlacedLandmark> {
+    diagram.landmarks.iter().filter(|l| l.kind == LandmarkKind::OnRim)
 }
 
 /// Holes, the outline in the colours of its sections, doubtful ones on a broad band, salient points, lines inside.
@@ -149,6 +175,13 @@ fn draw_labels(
         let t = link.at[pose];
         pen.label(&(k + 1).to_string(), here.at(t), here.outward(t), INK, Need::Must);
     }
+    for (k, landmark) in on_rims(diagram).enumerate() {
+        if let Some(&place) = landmark.at[pose].first() {
+            let number = (links.len() + k + 1).to_string();
+            let wanted = here.into_hole(place).unwrap_or_default();
+            pen.label(&number, here.cell.fit.place(place), wanted, INK, Need::Must);
+        }
+    }
     let doubtful = if pose == sections.reference() {
         Vec::new()
     } else {
@@ -167,10 +200,10 @@ fn draw_labels(
         let Some(middle) = places.get(places.len() / 2).map(|p| here.cell.fit.place(*p)) else {
             continue;
         };
-        let wanted = if landmark.kind == LandmarkKind::OnOutline {
-            here.outward(here.curve.nearest(places[0]).0)
-        } else {
-            Point::new(1.0, 0.0)
+        let wanted = match landmark.kind {
+            LandmarkKind::OnOutline => here.outward(here.curve.nearest(places[0]).0),
+            LandmarkKind::OnRim => here.into_hole(places[0]).unwrap_or_default(),
+            LandmarkKind::Inside | LandmarkKind::Line => Point::new(1.0, 0.0),
         };
         pen.label(&name_on(landmark, pose), middle, wanted, name_colour(), Need::IfFree);
     }
