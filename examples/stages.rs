@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use inbetween::blend::{BlendOptions, RigidBlend};
-use inbetween::compatible::{CompatibleMesh, refine, simplify, triangulate};
+use inbetween::compatible::{CompatibleMesh, RingPoint, refine, simplify, triangulate};
 use inbetween::export::png_bytes;
 use inbetween::input::Drawing;
 use inbetween::matching::{Correspondence, Landmark, MatchOptions, match_rings};
@@ -55,9 +55,10 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
         "2-matching",
     )?;
 
-    let kept: Vec<Vec<f64>> = landmarks
+    let on_outer = |t: &Option<f64>| t.map(|parameter| RingPoint { ring: 0, parameter });
+    let kept: Vec<Vec<RingPoint>> = landmarks
         .iter()
-        .filter_map(|l| l.at.iter().copied().collect())
+        .filter_map(|l| l.at.iter().map(on_outer).collect())
         .collect();
     let simplified = simplify(&outlines, &[matched.correspondence], &kept, &scene.mesh.simplify)?;
     save(draw_polygons(&outlines, &simplified.polygons)?, &folder, "3-simplified")?;

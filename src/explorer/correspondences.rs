@@ -271,7 +271,9 @@ pub(super) fn carry(body: &[u8], session: &Session) -> Result<Response, Refusal>
     let everywhere = mapping.poses.positions();
     let locator = || PointLocator::new(triangles, &everywhere[own]);
     let at: Option<Vec<[f64; 2]>> = match ring {
-        _ if is_inside => locator().bind(place).map(|bound| everywhere.iter().map(|at| pair(bound.at(at))).collect()),
+        _ if is_inside => locator()
+            .bind(place)
+            .map(|bound| everywhere.iter().map(|at| pair(bound.at(at))).collect()),
         0 => {
             let outer = |pose: usize| ArcLength::new(mapping.outlines[pose].outer());
             let carried = |pose: usize| pair(outer(pose).at(mapping.matching.outer.carry(own, pose, t)));
@@ -287,7 +289,11 @@ pub(super) fn carry(body: &[u8], session: &Session) -> Result<Response, Refusal>
                 let carried = |pose: usize| {
                     let curve = curve(pose)?;
                     let near = bound.at(&everywhere[pose]);
-                    Some(pair(if pose == own { place } else { curve.at(curve.nearest(near).0) }))
+                    Some(pair(if pose == own {
+                        place
+                    } else {
+                        curve.at(curve.nearest(near).0)
+                    }))
                 };
                 (0..names.len()).map(carried).collect()
             })

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::UNIX_EPOCH;
 
-use inbetween::input::{Drawing, FigureRule, InputNote, PaperRule};
+use inbetween::input::{Drawing, FigureRule, InputNote, PaperRule, PartOptions};
 use inbetween::math::Point;
 use inbetween::outline::Outline;
 use inbetween::scene::{DrawnSource, PoseSource, ReadingSettings, Scene, SceneBuildError};
@@ -73,11 +73,19 @@ impl<'a> Asked<'a> {
         read.map(|drawn| drawn.drawing)
     }
 
-    /// The drawing with other places of pieces that belong to it and of those that do not; of a scene without layers.
-    fn read_with(&self, keep: Vec<Point>, drop: Vec<Point>) -> Result<Arc<Drawing>, SceneBuildError> {
+    /// The drawing with other places of pieces that belong to it, and with none of pieces that do not: all of them have to be on it.
+    fn read_with(&self, keep: Vec<Point>) -> Result<Arc<Drawing>, SceneBuildError> {
         let mut scene = self.scene.clone();
-        if let Some(PoseSource::Drawn(source)) = scene.poses.get_mut(self.pose).map(|pose| &mut pose.source) {
-            (source.parts.keep, source.parts.drop) = (keep, drop);
+        let own = match scene.layers.get_mut(self.layer) {
+            Some(layer) => &mut layer.scene,
+            None => &mut scene,
+        };
+        if let Some(PoseSource::Drawn(source)) = own.poses.get_mut(self.pose).map(|pose| &mut pose.source) {
+            source.parts = PartOptions {
+                rule: source.parts.rule,
+                keep,
+                ..PartOptions::default()
+            };
         }
         scene.read_drawing(self.layer, self.pose).map(|drawn| drawn.drawing)
     }
@@ -109,16 +117,14 @@ pub(super) fn figure(request: &Request, session: &Session) -> Result<Response, R
     let asked = Asked::of(request, &shown)?;
     let parts = &asked.source.parts;
     if let Some(place) = request.value("keep") {
-        let mut keep = parts.keep.clone();
-        keep.push(place_of(place)?);
         // Whether there is a piece.
-        asked.read_with(keep, parts.drop.clone())?;
+        asked.read_with(vec![place_of(place)?])?;
     }
     let read = asked.read(session);
     let is_marked = !(parts.keep.is_empty() && parts.drop.is_empty());
     // With all that was dropped, and whatever places do not fit.
     let bare = if is_marked && (read.is_err() || !parts.drop.is_empty()) {
-        asked.read_with(Vec::new(), Vec::new()).ok()
+        asked.read_with(Vec::new()).ok()
     } else {
         None
     };
@@ -128,8 +134,11 @@ pub(super) fn figure(request: &Request, session: &Session) -> Result<Response, R
         Err(error) => (Some(Problem::from(error)), bare.as_ref()),
     };
     let mut pieces = drawing.map(|drawing| pieces_of(drawing)).unwrap_or_default();
-    if let (Ok(_), Some(bare)) = (&read, &bare) {
-        let is_dropped = |outline: &Outline| parts.drop.iter().any(|place| outline.contains(*place));
+    if let (Ok(read), Some(bare)) = (&read, &bare) {
+        // Of a drawing of several layers, a place may be one of another's.
+        let is_there = |outline: &Outline| outlines_of(read).any(|(own, _)| own == outline);
+        let is_dropped =
+            |outline: &Outline| parts.drop.iter().any(|place| outline.contains(*place)) && !is_there(outline);
         let dropped = outlines_of(bare).filter(|(outline, _)| is_dropped(outline));
         pieces.extend(dropped.map(|(outline, _)| piece_json(outline, "dropped")));
     }
@@ -194,7 +203,7 @@ fn pieces_of(drawing: &Drawing) -> Vec<Value> {
 /// What is to be said of a drawing. Parts that its outline goes without are seen on the sheet.
 fn notes_of(drawing: &Drawing) -> Vec<String> {
     let is_seen = |note: &&InputNote| matches!(note, InputNote::PartsLeftOut { .. }) && !drawing.parts.is_empty();
-    let told = drawing.notes.iter().filter(|note| !is_seen(note));
+    let told = drawing.notes.iter().filter(|note| note.is_told() && !is_seen(note));
     told.map(ToString::to_string).collect()
 }
 

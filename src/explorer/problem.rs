@@ -107,6 +107,11 @@ impl From<&SceneBuildError> for Problem {
                 line: *line,
                 ..Self::from(source.as_ref())
             },
+            SceneBuildError::NoPartInLayers { line, pose, .. } => Self {
+                line: Some(*line),
+                pose: Some(pose.clone()),
+                ..Self::at(error, Where::Pose)
+            },
             SceneBuildError::Provider { .. } => Self::at(error, Where::Space),
             other => Self::at(other, Where::File),
         }

@@ -83,6 +83,11 @@ pub enum InputNote {
         /// The area of all together, in source units squared.
         area: f64,
     },
+    /// A place under `keep` or `drop` that names no part of this drawing, but maybe one of another that lies over it.
+    PlacePassedOver {
+        /// The place, in source units.
+        place: Point,
+    },
     /// Pin-holes that were closed.
     PinHolesClosed {
         /// How many.
@@ -112,6 +117,14 @@ pub enum InputNote {
         /// How many.
         count: usize,
     },
+}
+
+impl InputNote {
+    /// Whether an artist is to be told. What concerns one of several drawings alone is not for itself.
+    #[must_use]
+    pub fn is_told(&self) -> bool {
+        !matches!(self, Self::PlacePassedOver { .. })
+    }
 }
 
 impl std::fmt::Display for InputNote {
@@ -182,6 +195,11 @@ impl std::fmt::Display for InputNote {
                 "{} with an area of {area:.0} together {} left out",
                 counted(*count, "speck"),
                 if *count == 1 { "is" } else { "are" }
+            ),
+            Self::PlacePassedOver { place } => write!(
+                f,
+                "no loose part is near ({:.1}, {:.1}), where `keep` or `drop` has a place",
+                place.x, place.y
             ),
             Self::PinHolesClosed { count, area } => write!(
                 f,

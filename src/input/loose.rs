@@ -25,6 +25,17 @@ impl PartRule {
     pub const NAMED: [(&'static str, Self); 2] = [("layers", Self::Apart), ("largest", Self::Largest)];
 }
 
+/// What places that name pieces are places of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PlaceRule {
+    /// Of this drawing: one without a piece is refused.
+    #[default]
+    OwnDrawing,
+    /// Of one of several drawings that lie over one another, as those of layers: one without a piece is passed over
+    /// ([`InputNote::PlacePassedOver`]), and so is one of `drop` on the largest piece, which is what the drawing is of.
+    SeveralDrawings,
+}
+
 /// Which pieces belong to a drawing.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PartOptions {
@@ -34,6 +45,8 @@ pub struct PartOptions {
     pub keep: Vec<Point>,
     /// Places, in source units, of pieces that do not belong to it. Default: none.
     pub drop: Vec<Point>,
+    /// What the places are places of. Default: of this drawing.
+    pub places: PlaceRule,
 }
 
 /// A piece of a drawing that is in several.
@@ -66,6 +79,8 @@ pub(super) struct Chosen {
     pub(super) loose: Vec<(usize, bool)>,
     /// Those that do not belong to the drawing.
     pub(super) dropped: Vec<usize>,
+    /// Places that name none of the pieces.
+    passed_over: Vec<Point>,
 }
 
 /// Chooses among the pieces of a drawing, of which `strips` belong to the sheet unless they are asked for. `dirt` is the area below which
@@ -77,14 +92,26 @@ pub(super) fn choose(
     dirt: impl Fn(f64) -> f64,
     at: impl Fn(Point) -> Option<usize>,
 ) -> Result<Option<Chosen>, InputError> {
-    let found = |places: &[Point]| -> Result<Vec<usize>, InputError> {
-        let piece = |place: &Point| at(*place).ok_or(InputError::NoPartThere { x: place.x, y: place.y });
-        places.iter().map(piece).collect()
+    let by_area = |a: &usize, b: &usize| pieces[*a].area.total_cmp(&pieces[*b].area).then(b.cmp(a));
+    let whole = (0..pieces.len())
+        .filter(|piece| !strips.contains(piece))
+        .max_by(by_area);
+    let mut passed_over = Vec::new();
+    let mut named = |places: &[Point], spared: Option<usize>| -> Result<Vec<usize>, InputError> {
+        let mut named = Vec::new();
+        for &place in places {
+            match at(place).filter(|piece| Some(*piece) != spared) {
+                Some(piece) => named.push(piece),
+                None if options.places == PlaceRule::SeveralDrawings => passed_over.push(place),
+                None => return Err(InputError::NoPartThere { x: place.x, y: place.y }),
+            }
+        }
+        Ok(named)
     };
-    let (kept, mut dropped) = (found(&options.keep)?, found(&options.drop)?);
+    let spared = whole.filter(|_| options.places == PlaceRule::SeveralDrawings);
+    let (kept, mut dropped) = (named(&options.keep, None)?, named(&options.drop, spared)?);
     dropped.extend(strips.iter().filter(|strip| !kept.contains(strip)));
     let is_left = |piece: &usize| !dropped.contains(piece);
-    let by_area = |a: &usize, b: &usize| pieces[*a].area.total_cmp(&pieces[*b].area).then(b.cmp(a));
     let Some(largest) = (0..pieces.len()).filter(is_left).max_by(by_area) else {
         return match pieces.is_empty() {
             true => Ok(None),
@@ -103,11 +130,18 @@ pub(super) fn choose(
         largest,
         loose: loose.into_iter().map(|piece| (piece, kept.contains(&piece))).collect(),
         dropped,
+        passed_over,
     }))
 }
 
 /// What is said of the pieces that the outline goes without.
 pub(super) fn note_pieces(pieces: &[Piece], chosen: &Chosen, dirt: f64, notes: &mut Vec<InputNote>) {
+    notes.extend(
+        chosen
+            .passed_over
+            .iter()
+            .map(|&place| InputNote::PlacePassedOver { place }),
+    );
     let others = (0..pieces.len()).filter(|piece| *piece != chosen.largest && !chosen.dropped.contains(piece));
     let (specks, loose): (Vec<Piece>, Vec<Piece>) = others.map(|k| pieces[k]).partition(|piece| piece.area < dirt);
     let area = |pieces: &[Piece]| pieces.iter().map(|piece| piece.area).sum();
@@ -155,8 +189,12 @@ mod tests {
         };
         assert_eq!(loose(&kept), Some(vec![(0, true), (2, false)]));
         let rule = PartRule::Largest;
-        let drop = Vec::new();
-        assert_eq!(loose(&PartOptions { rule, keep, drop }), Some(vec![(0, true)]));
+        let options = PartOptions {
+            rule,
+            keep,
+            ..PartOptions::default()
+        };
+        assert_eq!(loose(&options), Some(vec![(0, true)]));
     }
 
     #[test]
@@ -181,5 +219,22 @@ mod tests {
         };
         assert!(matches!(chosen(&[5.0], &beside), Err(InputError::NoPartThere { .. })));
         assert_eq!(chosen(&[], &PartOptions::default()).expect("nothing"), None);
+    }
+
+    #[test]
+    fn places_of_several_drawings_are_passed_over_where_they_name_nothing_and_never_take_the_whole_away() {
+        let nowhere = Point::new(3.0, 7.0);
+        let [speck, whole, part] = [0.0, 10.0, 20.0].map(|x| Point::new(x, 0.0));
+        let options = PartOptions {
+            keep: vec![speck, nowhere],
+            drop: vec![part, whole],
+            places: PlaceRule::SeveralDrawings,
+            ..PartOptions::default()
+        };
+        let found = chosen(&[5.0, 1000.0, 200.0], &options)
+            .expect("a choice")
+            .expect("pieces");
+        assert_eq!((found.largest, found.loose.as_slice()), (1, &[(0, true)][..]));
+        assert_eq!(found.passed_over, [nowhere, whole]);
     }
 }

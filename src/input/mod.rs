@@ -42,7 +42,7 @@ pub use decode::PictureChoice;
 pub use drawing::{Drawing, InputNote};
 pub use error::InputError;
 pub use figure::{FigureKind, FigureRule, PaperRule};
-pub use loose::{LoosePart, PartOptions, PartRule};
+pub use loose::{LoosePart, PartOptions, PartRule, PlaceRule};
 pub use obj::{ObjError, ObjForm, ObjProblem, open_obj, read_obj};
 pub use path::{
     Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement, Spread, Stop, Stroke, Subpath,

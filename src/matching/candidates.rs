@@ -21,7 +21,7 @@ const MOST_CANDIDATES: usize = 4;
 /// Candidates whose cost exceeds the least by more than this factor and this difference are not proposed, but for the upright one.
 const CANDIDATE_MARGIN: f32 = 1.5;
 const CANDIDATE_COST: f32 = 0.1;
-/// How far a row may move from where its candidate has it, in perimeters, unless half of the rows say that all go further.
+/// How far a row may move from where its candidate has it, in perimeters, unless half of the rows say that all go further and there is no landmark.
 const SETTLE_REACH: f64 = 0.03;
 /// Of so many rows one is asked how far all go.
 const TURN_STRIDE: usize = 8;
@@ -167,7 +167,8 @@ impl RingCandidates {
                 }
                 let rows = parameters.iter().zip(&places).step_by(TURN_STRIDE);
                 let turn = median(rows.filter_map(|(t, place)| turned(*t, place)).collect());
-                if turn.abs() > SETTLE_REACH {
+                // Landmarks say themselves how the curve is turned.
+                if turn.abs() > SETTLE_REACH && strays.is_empty() {
                     parameters.iter_mut().for_each(|t| *t += turn);
                 }
                 for (t, place) in parameters.iter_mut().zip(&places) {

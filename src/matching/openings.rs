@@ -87,7 +87,10 @@ fn pairs(
         }
     }
     let by_likeness = surest_pairs(candidates, [from.len(), to.len()]);
-    tied.iter().zip(by_likeness).map(|(tied, alike)| tied.or(alike)).collect()
+    tied.iter()
+        .zip(by_likeness)
+        .map(|(tied, alike)| tied.or(alike))
+        .collect()
 }
 
 /// For each of `count[0]` things its counterpart among `count[1]` others, the cheapest of the `candidates` (cost, thing, other) first; of equal
@@ -135,7 +138,10 @@ mod tests {
     fn holes_correspond_by_place_and_size_whatever_their_order() {
         let a = with_holes(&[(-5.0, -5.0, 2.0), (5.0, 5.0, 1.0)]);
         let b = with_holes(&[(5.5, 5.0, 1.2), (0.0, -7.0, 1.0), (-5.0, -4.0, 2.5)]);
-        assert_eq!(shared_holes(&[a.clone(), b.clone()], &HoleTies::default()), [[0, 2], [1, 0]]);
+        assert_eq!(
+            shared_holes(&[a.clone(), b.clone()], &HoleTies::default()),
+            [[0, 2], [1, 0]]
+        );
         // Shifted and scaled outlines have the same holes.
         let far = b.outer().map(|p| p * 7.0 + Point::new(90.0, 3.0)).expect("a ring");
         let holes = b
@@ -165,7 +171,10 @@ mod tests {
         let outlines = [left, right];
         let tied = |marks: &[Vec<Option<usize>>]| shared_holes(&outlines, &HoleTies::new(marks).expect("ties"));
         assert_eq!(tied(&[vec![Some(0), Some(1)]]), [[0, 1]]);
-        assert_eq!(tied(&[vec![Some(0), Some(1)], vec![Some(1), Some(0)]]), [[0, 1], [1, 0]]);
+        assert_eq!(
+            tied(&[vec![Some(0), Some(1)], vec![Some(1), Some(0)]]),
+            [[0, 1], [1, 0]]
+        );
         assert_eq!(tied(&[vec![Some(0), Some(2)]]), [[0, 2], [1, 1]]);
     }
 

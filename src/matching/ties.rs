@@ -75,11 +75,19 @@ impl HoleTies {
                 let on_two = (0..outlines).find(|&k| both(first, second, k).is_some_and(|(a, b)| a != b));
                 if let (Some(other), Some(outline)) = (on_one, on_two) {
                     let other = Some(other);
-                    return Err(HoleTieError::Contradiction { first, second, outline, other });
+                    return Err(HoleTieError::Contradiction {
+                        first,
+                        second,
+                        outline,
+                        other,
+                    });
                 }
                 let (kept, gone) = (united[first], united[second]);
                 if on_one.is_some() && kept != gone {
-                    united.iter_mut().filter(|own| **own == gone).for_each(|own| *own = kept);
+                    united
+                        .iter_mut()
+                        .filter(|own| **own == gone)
+                        .for_each(|own| *own = kept);
                 }
             }
         }
@@ -88,17 +96,29 @@ impl HoleTies {
             let place = ties.iter().position(|(class, _)| *class == united[second]);
             let place = place.unwrap_or_else(|| {
                 let holes = vec![None; outlines];
-                ties.push((united[second], Tie { holes, landmark: second }));
+                ties.push((
+                    united[second],
+                    Tie {
+                        holes,
+                        landmark: second,
+                    },
+                ));
                 ties.len() - 1
             });
             for outline in 0..outlines {
                 let Some(own) = hole(second, outline) else { continue };
                 match ties[place].1.holes[outline] {
                     Some(other) if other != own => {
-                        let is_other = |&first: &usize| united[first] == united[second] && hole(first, outline) == Some(other);
+                        let is_other =
+                            |&first: &usize| united[first] == united[second] && hole(first, outline) == Some(other);
                         let first = (0..second).find(is_other).unwrap_or(ties[place].1.landmark);
                         let other = None;
-                        return Err(HoleTieError::Contradiction { first, second, outline, other });
+                        return Err(HoleTieError::Contradiction {
+                            first,
+                            second,
+                            outline,
+                            other,
+                        });
                     }
                     _ => ties[place].1.holes[outline] = Some(own),
                 }
@@ -159,7 +179,9 @@ impl HoleTies {
         let mut settled = Settled::new(self, reference, count);
         let left = settled.place(unlikeness);
         let kept_out = |outline: usize| -> Vec<usize> {
-            let holes = left.iter().filter_map(|&tie| self.ties[tie].holes.get(outline).copied().flatten());
+            let holes = left
+                .iter()
+                .filter_map(|&tie| self.ties[tie].holes.get(outline).copied().flatten());
             holes.collect()
         };
         (
@@ -282,7 +304,12 @@ mod tests {
     #[test]
     fn contradictions_are_named() {
         let direct = HoleTies::new(&[vec![Some(0), Some(0)], vec![Some(0), Some(1)]]);
-        let named = |outline, other| HoleTieError::Contradiction { first: 0, second: 1, outline, other };
+        let named = |outline, other| HoleTieError::Contradiction {
+            first: 0,
+            second: 1,
+            outline,
+            other,
+        };
         assert_eq!(direct, Err(named(1, Some(0))));
         // By way of a third landmark: 0 and 2 are one on the first outline, 2 and 1 on the second.
         let by_way = HoleTies::new(&[
@@ -298,6 +325,12 @@ mod tests {
             vec![None, Some(1), Some(0)],
         ]);
         let left = taken.expect("ties").orders(0, &[2, 2, 2], &by_number);
-        assert_eq!(left, Err(HoleTieError::NoHoleLeft { landmark: 2, reference: 0 }));
+        assert_eq!(
+            left,
+            Err(HoleTieError::NoHoleLeft {
+                landmark: 2,
+                reference: 0
+            })
+        );
     }
 }

@@ -116,9 +116,7 @@ impl Boundaries {
 
     /// Whether they are those of this layer, too, whose drawings are the same.
     pub(super) fn serve(&self, layer: &LayerSpec, known: &Known) -> bool {
-        self.known == *known
-            && self.reference == layer.reference
-            && self.tolerance == layer.mesh.simplify.tolerance
+        self.known == *known && self.reference == layer.reference && self.tolerance == layer.mesh.simplify.tolerance
     }
 }
 

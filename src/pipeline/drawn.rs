@@ -189,7 +189,11 @@ pub(super) fn match_by_drawing(
     options.turns_rad = first.turns_rad;
     for hole in 0..outlines.first().map_or(0, |outline| outline.holes().len()) {
         let rings: Vec<Ring> = outlines.iter().map(|outline| outline.holes()[hole].clone()).collect();
-        let on_rim = known.on_rims.iter().zip(&rim_rings).filter(|(_, ring)| **ring == hole + 1);
+        let on_rim = known
+            .on_rims
+            .iter()
+            .zip(&rim_rings)
+            .filter(|(_, ring)| **ring == hole + 1);
         let on_rim: Vec<Landmark> = on_rim.map(|(rim, _)| rim.landmark.clone()).collect();
         let of_hole = match_hole(&rings, appearances, &on_rim, &options, &carried).map_err(refusal)?;
         matched.correspondences.push(of_hole.correspondence);

@@ -184,12 +184,7 @@ pub(super) fn marked_ring(
 }
 
 /// Why a landmark is on no ring and not inside either.
-fn refusal(
-    layer: &LayerSpec,
-    landmark: &str,
-    found: &[Option<Found>],
-    measured: &[MeasuredOutline],
-) -> PipelineError {
+fn refusal(layer: &LayerSpec, landmark: &str, found: &[Option<Found>], measured: &[MeasuredOutline]) -> PipelineError {
     let given = || (found.iter().enumerate()).filter_map(|(pose, found)| Some((pose, found.as_ref()?)));
     let first_at = |place: LandmarkPlace| given().find(|(_, found)| found.kind() == place);
     let (ring, place) = match first_at(LandmarkPlace::Rim) {
@@ -209,8 +204,8 @@ fn refusal(
         LandmarkPlace::Inside if is_covered() => LandmarkPlace::CoveredRim,
         kind => kind,
     };
-    let is_plain = stray_place == LandmarkPlace::Nowhere
-        || (ring, stray_place) == (MarkedRing::Outer, LandmarkPlace::Inside);
+    let is_plain =
+        stray_place == LandmarkPlace::Nowhere || (ring, stray_place) == (MarkedRing::Outer, LandmarkPlace::Inside);
     let Some((other, _)) = first_at(place).filter(|_| !is_plain) else {
         return stray.off_outline(layer, landmark, pose);
     };

@@ -103,7 +103,10 @@ pub(super) fn sorted(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Lan
                 sorted.points.push(InteriorPoint { name, at });
             }
             Some(MarkedRing::Outer) => {
-                let at = found.iter().map(|found| Some(found.as_ref()?.outer.parameter)).collect();
+                let at = found
+                    .iter()
+                    .map(|found| Some(found.as_ref()?.outer.parameter))
+                    .collect();
                 sorted.on_outline.push(Landmark { name, at });
             }
             Some(MarkedRing::Rim) => {
@@ -117,7 +120,8 @@ pub(super) fn sorted(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Lan
         }
     }
     let marks: Vec<Vec<Option<usize>>> = sorted.on_rims.iter().map(|rim| rim.holes.clone()).collect();
-    sorted.ties = HoleTies::new(&marks).map_err(|error| tie_refusal(&layer.names(), &rim_names(&sorted.on_rims), error))?;
+    sorted.ties =
+        HoleTies::new(&marks).map_err(|error| tie_refusal(&layer.names(), &rim_names(&sorted.on_rims), error))?;
     for path in &layer.paths {
         let name = path.name.clone();
         if path.at.iter().all(Option::is_none) {
@@ -145,7 +149,10 @@ pub(super) fn sorted(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Lan
             if let Some(refusal) = stray {
                 return Err(refusal);
             }
-            let at = found.iter().map(|found| Some(found.as_ref()?.outer.parameter)).collect();
+            let at = found
+                .iter()
+                .map(|found| Some(found.as_ref()?.outer.parameter))
+                .collect();
             ends[end] = Some(sorted.on_outline_at(Landmark { name, at }));
         }
         let place = |pose: usize, points: &Vec<Point>| -> Vec<Point> {
@@ -189,10 +196,13 @@ impl Landmarks {
     pub(super) fn placed(&self, anchors: &[Vec<Point>], mesh: &CompatibleMesh) -> Vec<PlacedLandmark> {
         let on_outline = self.on_outline.iter().map(|own| (own, LandmarkKind::OnOutline));
         let on_rims = self.on_rims.iter().map(|own| (&own.landmark, LandmarkKind::OnRim));
-        let on_rings = on_outline.chain(on_rims).zip(anchors).map(|((landmark, kind), places)| {
-            let at = places.iter().map(|place| vec![*place]).collect();
-            placed(&landmark.name, kind, at, &landmark.at)
-        });
+        let on_rings = on_outline
+            .chain(on_rims)
+            .zip(anchors)
+            .map(|((landmark, kind), places)| {
+                let at = places.iter().map(|place| vec![*place]).collect();
+                placed(&landmark.name, kind, at, &landmark.at)
+            });
         let along = |vertices: &[usize]| -> Vec<Vec<Point>> {
             let places = |positions: &Vec<Point>| vertices.iter().map(|&v| positions[v]).collect();
             mesh.positions.iter().map(places).collect()

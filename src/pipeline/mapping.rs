@@ -81,7 +81,7 @@ fn map_drawn(
     let mut notes = Vec::new();
     for (name, drawing) in names.iter().zip(drawings) {
         let of_drawing = |note: &InputNote| Note::on_pose(name, NoteKind::Drawing(note.clone()));
-        notes.extend(drawing.notes.iter().map(of_drawing));
+        notes.extend(drawing.notes.iter().filter(|note| note.is_told()).map(of_drawing));
     }
     if layer.role == LayerRole::Body {
         notes.extend(note_on_units(&names, drawings));
@@ -92,7 +92,13 @@ fn map_drawn(
     let known = Known::of(&landmarks);
     let boundaries = match before.filter(|before| before.serve(layer, &known)) {
         Some(same) => Arc::clone(same),
-        None => Arc::new(Boundaries::new(layer, drawings, known, before.map(Arc::as_ref), begins)?),
+        None => Arc::new(Boundaries::new(
+            layer,
+            drawings,
+            known,
+            before.map(Arc::as_ref),
+            begins,
+        )?),
     };
     let Boundaries {
         outlines,

@@ -77,7 +77,11 @@ pub(super) fn ordered_holes(
         .map(|outline| outline.holes().iter().map(middle).collect())
         .collect();
     let wanted: Vec<Vec<Option<Point>>> = (0..outlines.len())
-        .map(|pose| (middles[reference].iter()).map(|from| carried(pose, (*from)?)).collect())
+        .map(|pose| {
+            (middles[reference].iter())
+                .map(|from| carried(pose, (*from)?))
+                .collect()
+        })
         .collect();
     let away = |pose: usize, a: usize, b: usize| {
         let both = wanted[pose][a].zip(middles[pose][b]);
@@ -94,7 +98,9 @@ pub(super) fn ordered_holes(
         Some(1 + order.iter().position(|own| *own == hole)?)
     };
     // Every landmark is somewhere, and every hole has its place in the order.
-    Ok((known.on_rims.iter()).map(|rim| ring(&rim.holes).unwrap_or(0)).collect())
+    Ok((known.on_rims.iter())
+        .map(|rim| ring(&rim.holes).unwrap_or(0))
+        .collect())
 }
 
 /// The match of a hole that fits the registration best.

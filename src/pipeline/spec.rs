@@ -313,6 +313,8 @@ pub struct HandleMove {
 }
 
 /// A point that is named on several poses.
+///
+/// In every pose that has it, it is at the outer outline (onto which it is snapped), at the rim of a hole (the same, and these holes are one), or inside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LandmarkSpec {
     /// Its name.

@@ -65,11 +65,14 @@ impl Pair<'_> {
             rigid: Rigid::new(self.lattice, Matrix::identity()),
         };
         let (number, rings, places) = self.least_different(&shown, beginnings)?;
-        Ok(match Affine::squashing(&rings) {
+        let (outer, rims) = rings.split_at(rings.len().min(1));
+        Ok(match Affine::squashing(outer) {
             Some(affine) => {
-                let turned = self.turned_as_drawn(&shown, &rings, affine);
+                let turned = self.turned_as_drawn(&shown, outer, affine);
+                // Rims that are known to be elsewhere are left there.
+                let carries_rims = turned.off(rims) < SQUASHED;
                 Beginning {
-                    places: self.moved(&turned),
+                    places: if carries_rims { self.moved(&turned) } else { places },
                     form: turned.linear,
                     number,
                 }
@@ -151,7 +154,7 @@ impl Pair<'_> {
             let rings = self.in_pixels(beginning);
             let places = self.spread(&rings)?;
             let spread = self.difference(shown, &places);
-            let least = Affine::of(&rings).map_or(spread, |affine| {
+            let least = Affine::of(&rings[..rings.len().min(1)]).map_or(spread, |affine| {
                 spread.min(self.difference(shown, &self.moved(&affine)))
             });
             let difference = least * (1.0 + TURNED * self.turn_rad(&places).min(FRAC_PI_2));
@@ -224,6 +227,15 @@ impl Affine {
             points.filter_map(|p| nearest_on_ring(&ring.pose, self.at(*p)))
         });
         let (sum, count) = points.fold((0.0, 0usize), |(sum, count), (distance, _)| (sum + distance, count + 1));
+        sum / (count.max(1) as f64 * PIXELS_PER_UNIT)
+    }
+
+    /// How far it takes the reference's points from those that correspond to them in the mean, in figure units; 0 of none.
+    fn off(&self, rings: &[RingPair]) -> f64 {
+        let pairs = rings.iter().flat_map(|ring| ring.reference.iter().zip(&ring.pose));
+        let (sum, count) = pairs.fold((0.0, 0usize), |(sum, count), (a, b)| {
+            (sum + (self.at(*a) - b).norm(), count + 1)
+        });
         sum / (count.max(1) as f64 * PIXELS_PER_UNIT)
     }
 

@@ -13,6 +13,10 @@ const FIRST_STIFFNESS: f64 = 30.0;
 const FIRST_ITERATIONS: usize = 10;
 /// Trust falls by a factor e when the best place in the window differs by this share of [`MOST_DIFFERENCE`].
 pub(super) const DOUBT: f32 = 0.25;
+/// The trust in outer rings that stay, less than in what is clear, and in rims between the landmarks that are on them, more than that: far more than in empty
+/// paint, which would give way.
+const HELD_OUTER: f64 = 30.0;
+const HELD_RIM: f64 = 300.0;
 /// A level ends when vertices move by less than this share of its step in the mean.
 const STILL: f64 = 0.1;
 
@@ -23,6 +27,8 @@ pub(super) struct Pair<'a> {
     pub(super) pose: &'a Appearance,
     /// In working pixels.
     pub(super) pins: Vec<Pin>,
+    /// Points of rings that stay, in working pixels.
+    held: Vec<Pin>,
     /// Which vertices are inside the figure, away from its edge.
     pub(super) inside: &'a [bool],
 }
@@ -58,19 +64,24 @@ impl<'a> Pair<'a> {
                     trust: pin.trust,
                 })
                 .collect(),
+            held: Vec::new(),
             inside,
         }
     }
 
     /// The pose registered from the best of some beginnings.
     pub(super) fn registered(
-        &self,
+        mut self,
         points: &Template,
         templates: &[Template],
         beginnings: &[RingPairs],
     ) -> Result<Registered, RegistrationError> {
         let coarsest = self.pose.blurred(LEVELS[0].deviation_px);
         let beginning = self.best_beginning(points, &coarsest, beginnings)?;
+        // Empty paint slides along its outlines: where rims are turned against the outer one, they would turn each other.
+        if let Some(rings) = beginnings.get(beginning.number).filter(|rings| rings.len() > 1) {
+            self.held = self.on_rings(rings);
+        }
         let rigid = Rigid::new(self.lattice, beginning.form);
         let mut places = self.stiffened(&rigid, &beginning.places)?;
         let mut residuals = Vec::new();
@@ -100,14 +111,32 @@ impl<'a> Pair<'a> {
         Ok(rigid.solve(places, &targets, FIRST_STIFFNESS, FIRST_ITERATIONS)?)
     }
 
+    /// One pair of points of rings in correspondence a vertex at most: the one that is nearest to it.
+    fn on_rings(&self, rings: &RingPairs) -> Vec<Pin> {
+        let mut nearest: Vec<Option<(f32, Pin)>> = vec![None; self.lattice.points.len()];
+        for (ring, (reference, pose)) in rings.iter().enumerate() {
+            let trust = if ring == 0 { HELD_OUTER } else { HELD_RIM };
+            for (from, to) in reference.iter().zip(pose) {
+                let (from, to) = (self.reference.to_pixels(*from), self.pose.to_pixels(*to));
+                let Some((cell, distance)) = self.lattice.cell_at(from) else {
+                    continue;
+                };
+                if nearest[cell].is_none_or(|(least, _)| distance < least) {
+                    nearest[cell] = Some((distance, Pin { from, to, trust }));
+                }
+            }
+        }
+        nearest.into_iter().flatten().map(|(_, pin)| pin).collect()
+    }
+
     /// Joins the targets with those that pins give the vertices next to them, each by its trust.
     fn pin(&self, rigid: &Rigid, places: &[Point], targets: &mut [Point], trust: &mut [Matrix]) {
-        if self.pins.is_empty() {
+        if self.pins.is_empty() && self.held.is_empty() {
             return;
         }
         let frames = rigid.frames(places, 1);
         let mut sums = vec![(0.0, Point::zeros()); targets.len()];
-        for pin in &self.pins {
+        for pin in self.pins.iter().chain(&self.held) {
             if let Some((cell, _)) = self.lattice.cell_at(pin.from) {
                 let aside = frames[cell] * (self.lattice.points[cell] - pin.from);
                 sums[cell].0 += pin.trust;

@@ -33,7 +33,8 @@ pub enum RegistrationError {
     Solve(#[from] SolveError),
 }
 
-/// Outlines in correspondence, as a beginning: for every ring, points of the reference and of the pose in source units.
+/// Outlines in correspondence, as a beginning: points of the reference and of the pose in source units, first those of the outer ring; then those of
+/// rims that are known to correspond: with them all rings stay where nothing that is drawn speaks against it.
 pub type RingPairs = Vec<(Vec<Point>, Vec<Point>)>;
 
 /// A place of the reference and the place of a pose that corresponds to it, in source units.

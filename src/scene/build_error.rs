@@ -30,6 +30,24 @@ pub enum SceneBuildError {
         /// What is wrong.
         source: Box<InputError>,
     },
+    /// A place under `keep` or `drop` of a pose with layers names nothing.
+    #[error(
+        "{}:{line}: pose '{pose}': `keep` and `drop`: on the drawing of no layer is a loose part near ({x:.1}, {y:.1}); give a place on the part that is \
+         meant",
+        file.display()
+    )]
+    NoPartInLayers {
+        /// The scene file.
+        file: PathBuf,
+        /// The line that names the first of the pose's drawings.
+        line: usize,
+        /// The pose's name.
+        pose: String,
+        /// The place, in source units.
+        x: f64,
+        /// The place, in source units.
+        y: f64,
+    },
     /// Weights were asked for that cannot do what the scene says.
     #[error("{}: pose space: radial weights know no walls and no bounds; remove them, or take biharmonic weights", file.display())]
     Provider {

@@ -12,6 +12,7 @@ mod drawings;
 mod error;
 mod file;
 mod layers;
+mod named_parts;
 mod new;
 mod newcomer;
 mod separated;

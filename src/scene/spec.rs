@@ -6,10 +6,11 @@
 use rayon::prelude::*;
 
 use super::drawings::{canvas_px, read_drawing, read_sheet};
-use super::settings::{FrameSize, Holes, Layout, PoseSource, Provider, Scene};
+use super::named_parts::check_named_parts;
+use super::settings::{DrawnSource, FrameSize, Holes, Layout, PoseSource, Provider, Scene};
 use super::{SceneBuildError, SceneLayer};
 use crate::blend::BlendOptions;
-use crate::input::Picture;
+use crate::input::{PartOptions, Picture, PlaceRule};
 use crate::math::Point;
 use crate::math::point::bounding_box;
 use crate::pipeline::{
@@ -18,6 +19,12 @@ use crate::pipeline::{
     automatic_places, editable_weights, map_layer,
 };
 use crate::weights::{BiharmonicOptions, Range, RbfOptions};
+
+/// Whether a drawing is read with places that may be those of other layers' drawings.
+fn names_parts_of_layers(said: &DrawnSource) -> bool {
+    let PartOptions { keep, drop, places, .. } = &said.parts;
+    *places == PlaceRule::SeveralDrawings && !(keep.is_empty() && drop.is_empty())
+}
 
 /// Layers of a pose that is reflected are reflected about one line, the middle of all of them.
 fn reflect_together(layers: &mut [LayerSpec]) {
@@ -61,10 +68,10 @@ impl Scene {
     /// # Errors
     /// As [`Self::spec`].
     pub fn layer_spec(&self, layer: usize) -> Result<LayerSpec, SceneBuildError> {
-        // Which way a pose faces, and about which line it is reflected, is a matter of all its layers.
+        // Which way a pose faces, about which line it is reflected, and whether its places of loose parts name any, is a matter of all its layers.
         if self.of_layer(layer).drawn_poses().into_iter().all(|pose| {
             let drawing = self.of_layer(layer).drawing_of(pose);
-            drawing.is_none_or(|(_, said)| said.facing == Facing::AsDrawn)
+            drawing.is_none_or(|(_, said)| said.facing == Facing::AsDrawn && !names_parts_of_layers(said))
         }) {
             return self.layer_with(layer, &read_drawing);
         }
@@ -190,6 +197,7 @@ impl Scene {
             self.poses.iter().map(|pose| pose.draw_order.clone()).collect()
         };
         let layers = layers.into_iter().collect::<Result<Vec<LayerSpec>, _>>()?;
+        check_named_parts(self, &layers)?;
         let spec = CharacterSpec {
             layers,
             draw_orders,

@@ -235,6 +235,59 @@ fn parts_can_be_left_out_kept_and_dropped() {
 }
 
 #[test]
+fn in_a_scene_with_layers_a_place_names_parts_of_the_drawings_that_have_one_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A ball floats beside the body; on the arm, which lies over the body, is a speck.
+    let body = [(100.0, 110.0, 50.0, 60.0, INK), (20.0, 30.0, 12.0, 12.0, RED)];
+    let arm = [(60.0, 60.0, 14.0, 12.0, SKIN), (100.0, 100.0, 4.0, 4.0, SKIN)];
+    for (name, shapes) in [("body", body), ("arm", arm)] {
+        for pose in ["stand", "wave"] {
+            let bytes = png_bytes(&drawn(&shapes)).expect("a PNG");
+            std::fs::write(folder.path().join(format!("{pose}-{name}.png")), bytes).expect("written");
+        }
+    }
+    let text = |said: &str| {
+        let pose = |pose: &str, at: &str, said: &str| {
+            format!(
+                "[[pose]]\nname = \"{pose}\"\nat = {at}\n{said}source = {{ body = \"{pose}-body.png\", arm = \"{pose}-arm.png\" }}\n"
+            )
+        };
+        let layers = "[[layer]]\nname = \"body\"\n[[layer]]\nname = \"arm\"\n";
+        format!(
+            "version = 1\n{}{}{layers}",
+            pose("stand", "[0.0, 0.0]", said),
+            pose("wave", "[1.0, 0.0]", said)
+        )
+    };
+    let layers = |said: &str| -> Vec<String> {
+        let character = character(&opened(folder.path(), &text(said)));
+        character.layers().iter().map(|layer| layer.name().to_owned()).collect()
+    };
+    let all = layers("");
+    assert_eq!(all.len(), 4, "{all:?}");
+    // The ball and the speck are taken out of the drawing that each is on; the body, which is under the speck, stays.
+    assert_eq!(layers("drop = [ [20.0, 30.0] ]\n").len(), 3);
+    assert_eq!(layers("drop = [ [20.0, 30.0], [100.0, 100.0] ]\n"), ["body", "arm"]);
+    // Kept where all others are left out.
+    let largest = |said: &str| {
+        let text = text(said) + "[input]\nparts = \"largest\"\n";
+        character(&opened(folder.path(), &text)).layers().len()
+    };
+    assert_eq!((largest(""), largest("keep = [ [100.0, 100.0] ]\n")), (2, 3));
+    // What is on no drawing, or the whole of the only one that is there, is refused; for one layer alone, too.
+    for said in ["keep = [ [190.0, 10.0] ]\n", "drop = [ [100.0, 160.0] ]\n"] {
+        let scene = opened(folder.path(), &text(said));
+        for refusal in [scene.spec().err(), scene.layer_spec(1).err()] {
+            let refusal = refusal.expect("nothing is there").to_string();
+            assert!(
+                refusal.contains("scene.toml:") && refusal.contains("pose 'stand'"),
+                "{refusal}"
+            );
+        }
+    }
+}
+
+#[test]
 fn dust_is_no_part_and_is_told_of_in_a_line_a_pose() {
     let folder = tempfile::tempdir().expect("a folder");
     let dusty = |x: f64, seed: usize| {

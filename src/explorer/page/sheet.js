@@ -2,7 +2,7 @@
 // it back; a click on something else that is drawn asks for it.
 import { getJson } from './api.js';
 import { s, set } from './dom.js';
-import { isLayered, layerOfSheets } from './figures.js';
+import { layerOfSheets } from './figures.js';
 import { crossingsAt, isInside } from './located.js';
 import { edit, emit, rounded } from './state.js';
 
@@ -15,9 +15,6 @@ const SAID = {
 
 const ring = (points) => `M${Array.from({ length: points.length / 2 }, (_, k) => `${points[2 * k]} ${points[2 * k + 1]}`).join('L')}Z`;
 const rings = ({ outline, holes }) => [outline, ...holes].map(ring).join('');
-
-/** Whether parts of a figure can be chosen: places of a pose with layers would be on one layer's drawing or the other's. */
-export const canChoose = () => !isLayered();
 
 /** Draws a figure over its sheet; `px`: drawing units of a CSS pixel. */
 export function drawFigure(cell, figure, px) {
@@ -35,7 +32,7 @@ export function drawFigure(cell, figure, px) {
 function pieceMark(cell, figure, piece, px) {
   const [what, action] = SAID[piece.role];
   const isAlone = piece.role === 'body' && figure.pieces.filter(({ role }) => role !== 'dropped').length === 1;
-  const can = canChoose() && !isAlone;
+  const can = !isAlone;
   const text = can ? `${what}: click to ${action}` : what;
   const dashes = piece.role === 'dropped' ? `${5 * px} ${4 * px}` : null;
   const looks = { d: rings(piece), 'stroke-width': 1.75 * px, 'stroke-dasharray': dashes, 'fill-rule': 'evenodd' };

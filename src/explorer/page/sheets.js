@@ -2,7 +2,7 @@
 import { byId, h, onceAFrame, s, set } from './dom.js';
 import { figures, posesWithSheets } from './figures.js';
 import { icon } from './icons.js';
-import { askFor, canChoose, drawFigure, drawSheet } from './sheet.js';
+import { askFor, drawFigure, drawSheet } from './sheet.js';
 import { choosePose, on, store } from './state.js';
 import { tile } from './tiling.js';
 
@@ -41,7 +41,7 @@ function makeCell(pose) {
   const cell = { name, drawing, layers, taken, warning, element };
   drawing.addEventListener('click', (event) => {
     choosePose(pose);
-    if (event.target.closest('.choice, .place') || !canChoose()) return;
+    if (event.target.closest('.choice, .place')) return;
     const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(drawing.getScreenCTM().inverse());
     // On the figure itself there is nothing to be asked for.
     if (!event.target.closest('.piece')) askFor(cell, pose, [x, y]);

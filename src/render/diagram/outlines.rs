@@ -87,7 +87,9 @@ pub(super) fn draw(canvas: &mut Canvas, diagram: &Diagram, sections: &Sections, 
     }
     for landmark in on_rims(diagram) {
         let at = placed.iter().zip(&landmark.at);
-        let places: Vec<Point> = at.filter_map(|(pose, at)| Some(pose.cell.fit.place(*at.first()?))).collect();
+        let places: Vec<Point> = at
+            .filter_map(|(pose, at)| Some(pose.cell.fit.place(*at.first()?)))
+            .collect();
         for row in places.chunks(columns.max(1)) {
             canvas.line(row, 0.8, faint(INK));
         }

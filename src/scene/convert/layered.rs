@@ -3,7 +3,7 @@
 use toml::{Spanned, Value};
 
 use super::{Checked, Reader};
-use crate::input::{Extent, PartOptions};
+use crate::input::{Extent, PlaceRule};
 use crate::pipeline::DeformedCopy;
 use crate::scene::error::SceneProblem;
 use crate::scene::file::{LayerTable, PoseTable, SceneFile};
@@ -186,27 +186,10 @@ impl Reader<'_> {
             },
             element,
             reading: self.reading_of(written, &scene.input.reading)?,
-            parts: self.parts_of_layer(written, scene)?,
+            parts: self.parts_of(written, scene.input.parts, PlaceRule::SeveralDrawings)?,
             picture: self.picture_of(written, &scene.input)?,
             facing: self.facing_of(written)?,
         })))
-    }
-
-    /// Loose parts of a layer's drawing. Places of a pose would be on one layer's drawing or the other's.
-    fn parts_of_layer(&self, written: &PoseTable, scene: &Scene) -> Checked<PartOptions> {
-        match written.keep.as_ref().or(written.drop.as_ref()) {
-            Some(list) => Err(self.fail(
-                list.span().start,
-                SceneProblem::Format(format!(
-                    "pose '{}' has `keep` or `drop`, which do not go with layers; remove them, and what does not belong to a layer from its drawing",
-                    written.name.get_ref()
-                )),
-            )),
-            None => Ok(PartOptions {
-                rule: scene.input.parts,
-                ..PartOptions::default()
-            }),
-        }
     }
 
     /// The handles of a copy that are meant for one layer.

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use toml::{Spanned, Value};
 
 use super::{Checked, Reader, WrittenReading};
-use crate::input::{Extent, PartOptions, PartRule, PictureChoice};
+use crate::input::{Extent, PartOptions, PartRule, PictureChoice, PlaceRule};
 use crate::math::Point;
 use crate::pipeline::Facing;
 use crate::scene::error::SceneProblem;
@@ -119,8 +119,8 @@ impl Reader<'_> {
         self.reading(&keys, &format!("pose '{}':", written.name.get_ref()), usual)
     }
 
-    /// Which loose parts belong to the drawing of a pose.
-    fn parts_of(&self, written: &PoseTable, rule: PartRule) -> Checked<PartOptions> {
+    /// Which loose parts belong to the drawing of a pose, or to its drawings of several layers.
+    pub(super) fn parts_of(&self, written: &PoseTable, rule: PartRule, of: PlaceRule) -> Checked<PartOptions> {
         let name = written.name.get_ref();
         let places = |list: &Option<Spanned<Vec<Value>>>, key: &str| -> Checked<Vec<Point>> {
             let Some(list) = list else { return Ok(Vec::new()) };
@@ -132,6 +132,7 @@ impl Reader<'_> {
             rule,
             keep: places(&written.keep, "keep")?,
             drop: places(&written.drop, "drop")?,
+            places: of,
         })
     }
 
@@ -201,7 +202,7 @@ impl Reader<'_> {
             element,
             extent: Extent::Everything,
             reading: self.reading_of(written, &input.reading)?,
-            parts: self.parts_of(written, input.parts)?,
+            parts: self.parts_of(written, input.parts, PlaceRule::OwnDrawing)?,
             picture: self.picture_of(written, input)?,
             facing: self.facing_of(written)?,
         })
