@@ -113,14 +113,15 @@ impl<'a> Pair<'a> {
 
     /// One pair of points of rings in correspondence a vertex at most: the one that is nearest to it.
     fn on_rings(&self, rings: &RingPairs) -> Vec<Pin> {
-        let mut nearest: Vec<Option<(f32, Pin)>> = vec![None; self.lattice.points.len()];
+        let mut nearest: Vec<Option<(f64, Pin)>> = vec![None; self.lattice.points.len()];
         for (ring, (reference, pose)) in rings.iter().enumerate() {
             let trust = if ring == 0 { HELD_OUTER } else { HELD_RIM };
             for (from, to) in reference.iter().zip(pose) {
                 let (from, to) = (self.reference.to_pixels(*from), self.pose.to_pixels(*to));
-                let Some((cell, distance)) = self.lattice.cell_at(from) else {
+                let Some((cell, _)) = self.lattice.cell_at(from) else {
                     continue;
                 };
+                let distance = (from - self.lattice.points[cell]).norm_squared();
                 if nearest[cell].is_none_or(|(least, _)| distance < least) {
                     nearest[cell] = Some((distance, Pin { from, to, trust }));
                 }

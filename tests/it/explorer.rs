@@ -73,6 +73,11 @@ impl Explorer {
         let scene = folder.path().join("scene.toml");
         let text = change(std::fs::read_to_string(&scene).expect("readable"));
         std::fs::write(&scene, text).expect("written");
+        Self::within(folder)
+    }
+
+    /// Explores the scene of a folder.
+    fn within(folder: tempfile::TempDir) -> Self {
         let mut child = inbetween()
             .args(["explore", "scene.toml", "--no-open"])
             .current_dir(folder.path())
@@ -462,6 +467,53 @@ fn a_change_from_outside_is_noticed() {
     darker.save(&drawing).expect("written");
     let again = explorer.state_when(|later| later["revisions"]["pictures"] != state["revisions"]["pictures"]);
     assert_ne!(again["revisions"]["pictures"], first["revisions"]["pictures"]);
+}
+
+#[test]
+fn a_click_near_a_rim_is_a_place_of_that_rim_on_all_poses() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let poses = [("left", 60.0), ("right", 90.0)];
+    for (name, x) in poses {
+        let drawing = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"150\" height=\"120\"><path fill-rule=\"evenodd\" \
+             d=\"M5 5 L145 10 L140 110 L10 115 Z M{} 40 L{} 60 L{} 80 L{} 60 Z\"/></svg>",
+            x,
+            x + 25.0,
+            x,
+            x - 20.0
+        );
+        std::fs::write(folder.path().join(format!("{name}.svg")), drawing).expect("written");
+    }
+    let pose =
+        |(name, x): (&str, f64)| format!("[[pose]]\nname = \"{name}\"\nsource = \"{name}.svg\"\nat = [{x}, 0]\n");
+    let text = format!("version = 1\n{}{}", pose(poses[0]), pose(poses[1]));
+    std::fs::write(folder.path().join("scene.toml"), text).expect("written");
+    let explorer = Explorer::within(folder);
+    explorer.settled();
+    // A little inside the hole, near its right corner.
+    let carried = explorer
+        .post("api/carry", &json!({"pose": "left", "at": [84.0, 60.0]}))
+        .json();
+    assert_eq!(carried["kind"], "rim");
+    let at = |pose: usize| [0, 1].map(|axis| carried["at"][pose][axis].as_f64().expect("a number"));
+    for (pose, corner) in [(0, [85.0, 60.0]), (1, [115.0, 60.0])] {
+        let away = (at(pose)[0] - corner[0]).hypot(at(pose)[1] - corner[1]);
+        assert!(away < 3.0, "{:?}", at(pose));
+    }
+    // It becomes a landmark, which is one of the rim.
+    explorer.edit(json!([{"op": "add_landmark", "at": {"left": at(0), "right": at(1)}}]));
+    assert_eq!(explorer.settled()["problems"], json!([]));
+    assert_eq!(
+        explorer.get("api/correspondences").json()["landmarks"][0]["kind"],
+        "rim"
+    );
+    // Away from the rim on one pose it explains itself.
+    explorer.edit(json!([{"op": "move_landmark", "landmark": "landmark", "at": {"right": [60.0, 95.0]}}]));
+    let problems = explorer.settled()["problems"].clone();
+    assert_eq!(
+        (&problems[0]["landmark"], &problems[0]["pose"]),
+        (&json!("landmark"), &json!("right"))
+    );
 }
 
 #[test]

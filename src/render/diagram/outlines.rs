@@ -53,7 +53,7 @@ impl Placed<'_> {
     }
 
     /// The same at the rim nearest to a place of the pose: into the hole, which runs the other way round.
-    fn into_hole(&self, place: Point) -> Option<Point> {
+    fn holeward(&self, place: Point) -> Option<Point> {
         let nearest = self.holes.iter().map(|rim| (rim, rim.nearest(place)));
         let (rim, (t, _)) = nearest.min_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
         Some(self.aside(rim, t))
@@ -180,7 +180,7 @@ fn draw_labels(
     for (k, landmark) in on_rims(diagram).enumerate() {
         if let Some(&place) = landmark.at[pose].first() {
             let number = (links.len() + k + 1).to_string();
-            let wanted = here.into_hole(place).unwrap_or_default();
+            let wanted = here.holeward(place).unwrap_or_default();
             pen.label(&number, here.cell.fit.place(place), wanted, INK, Need::Must);
         }
     }
@@ -204,7 +204,7 @@ fn draw_labels(
         };
         let wanted = match landmark.kind {
             LandmarkKind::OnOutline => here.outward(here.curve.nearest(places[0]).0),
-            LandmarkKind::OnRim => here.into_hole(places[0]).unwrap_or_default(),
+            LandmarkKind::OnRim => here.holeward(places[0]).unwrap_or_default(),
             LandmarkKind::Inside | LandmarkKind::Line => Point::new(1.0, 0.0),
         };
         pen.label(&name_on(landmark, pose), middle, wanted, name_colour(), Need::IfFree);
