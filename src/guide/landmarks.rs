@@ -46,7 +46,8 @@
 //! the landmark's name.
 //!
 //! A pose may lack a landmark. On the outline it is then placed by the matching, inside by its place relative to the outlines of the poses that have
-//! it. The rim of a hole takes no landmarks. A deformed copy takes none of its own: it carries those of the pose that it copies.
+//! it. A landmark near the rim of a hole is snapped to
+//! that rim, in every pose that has it: it says which hole of every pose is which, and how the rim is turned. A deformed copy takes none of its own: it carries those of the pose that it copies.
 //!
 //! One or two landmarks are often enough, at the places that `show` names. Landmarks also serve as names for other purposes: what
 //! [`reach`](super::pose_space) takes hold of, what layers hang on ([`layers`](super::layers)), what stays on the ground and

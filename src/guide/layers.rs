@@ -40,7 +40,8 @@
 //! - All layers share the pose space, the weights and the animation. A layer is blended among the poses that have it.
 //! - Every landmark says which `layer` it is on.
 //! - The drawings of all layers of a pose have the same coordinates: pictures of one size, or one SVG file.
-//! - `keep` and `drop` do not go with layers; take out of a layer's drawing what does not belong to it.
+//! - A place under `keep` or `drop` is one of all drawings of the pose: it names the loose parts that are there, on whatever layer. The largest part of
+//!   a drawing is never dropped.
 //!
 //! # Anchors
 //!
