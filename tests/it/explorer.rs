@@ -496,10 +496,13 @@ fn a_click_near_a_rim_is_a_place_of_that_rim_on_all_poses() {
         .json();
     assert_eq!(carried["kind"], "rim");
     let at = |pose: usize| [0, 1].map(|axis| carried["at"][pose][axis].as_f64().expect("a number"));
-    for (pose, corner) in [(0, [85.0, 60.0]), (1, [115.0, 60.0])] {
-        let away = (at(pose)[0] - corner[0]).hypot(at(pose)[1] - corner[1]);
-        assert!(away < 3.0, "{:?}", at(pose));
+    // Both holes are |x - middle| / a + |y - 60| / 20 = 1, with a = 25 to the right.
+    for (pose, middle) in [(0, 60.0), (1, 90.0)] {
+        let [x, y] = at(pose);
+        let off = (x - middle) / 25.0 + (y - 60.0).abs() / 20.0 - 1.0;
+        assert!(x > middle && off.abs() < 0.02, "{x} {y}");
     }
+    assert!((at(0)[0] - 84.5).abs() < 1.0);
     // It becomes a landmark, which is one of the rim.
     explorer.edit(json!([{"op": "add_landmark", "at": {"left": at(0), "right": at(1)}}]));
     assert_eq!(explorer.settled()["problems"], json!([]));
@@ -508,11 +511,11 @@ fn a_click_near_a_rim_is_a_place_of_that_rim_on_all_poses() {
         "rim"
     );
     // Away from the rim on one pose it explains itself.
-    explorer.edit(json!([{"op": "move_landmark", "landmark": "landmark", "at": {"right": [60.0, 95.0]}}]));
+    explorer.edit(json!([{"op": "move_landmark", "landmark": "landmark_1", "at": {"right": [60.0, 95.0]}}]));
     let problems = explorer.settled()["problems"].clone();
     assert_eq!(
         (&problems[0]["landmark"], &problems[0]["pose"]),
-        (&json!("landmark"), &json!("right"))
+        (&json!("landmark_1"), &json!("right"))
     );
 }
 
