@@ -319,8 +319,8 @@ fn the_command_names_pose_landmark_and_line() {
 fn a_deformed_copy_carries_what_is_on_a_rim() {
     let drawing = ring();
     let poses = [drawing.clone(), drawing.clone()];
-    let place = Some(on_rim(&drawing, 0, 0.0));
-    let mut spec = layer(&poses, &[("lid", &[place, place])]);
+    let place = on_rim(&drawing, 0, 0.0);
+    let mut spec = layer(&poses, &[("lid", &[Some(place); 2])]);
     let moved = |from: [f64; 2], to: [f64; 2]| HandleMove {
         from: from.into(),
         to: to.into(),
@@ -338,8 +338,7 @@ fn a_deformed_copy_carries_what_is_on_a_rim() {
         (LandmarkKind::OnRim, &[true, true, false][..])
     );
     let carried = landmark.at[2][0];
-    let [place, rim] = [place.unwrap_or_default(), carried];
-    assert!(vertex_at(&mapping, 1, &[place, place, rim]).is_some());
+    assert!(vertex_at(&mapping, 1, &[place, place, carried]).is_some());
     assert!(carried.x > place.x + 1.0);
     let on_rim = ArcLength::new(&mapping.outlines[2].holes()[0]).nearest(carried).1;
     assert!(on_rim < 1e-6, "{on_rim}");
