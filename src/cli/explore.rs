@@ -9,6 +9,7 @@ use inbetween::export::PendingFile;
 use inbetween::scene::scene_text;
 
 use super::new::{self, Copy};
+use super::values::Grid;
 use super::{Failure, Verbosity};
 use crate::explorer::{Begun, DrawingCopy, Explorer, Opened};
 
@@ -23,11 +24,15 @@ use crate::explorer::{Begun, DrawingCopy, Explorer, Opened};
 Examples:
   inbetween explore walker/scene.toml
   inbetween explore walker/*.png
+  inbetween explore sheet.png --cells 4x2
   inbetween explore walker/scene.toml --port 8000 --no-open")]
 pub(crate) struct Arguments {
     /// The scene file; or drawings, a pose each: PNG, JPEG, WebP, GIF, BMP, TIFF or SVG
     #[arg(required = true, value_name = "SCENE|DRAWING")]
     paths: Vec<PathBuf>,
+    /// Sheets: how many columns and rows of cells each drawing has, such as 4x2; a pose for every cell that is not empty
+    #[arg(long, value_name = "COLSxROWS")]
+    cells: Option<Grid>,
     /// The port to listen at; 0, the default, is any free one
     #[arg(long, value_name = "P", default_value_t = 0)]
     port: u16,
@@ -38,7 +43,14 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {
     let opened = match arguments.paths.as_slice() {
-        [scene] if !new::is_drawing(scene) => Opened::Scene(scene.clone()),
+        [scene] if !new::is_drawing(scene) => {
+            if arguments.cells.is_some() {
+                return Err(Failure::Usage(
+                    "--cells goes with drawings; in a scene `cells` stands under [input]".to_owned(),
+                ));
+            }
+            Opened::Scene(scene.clone())
+        }
         drawings => match drawings.iter().find(|path| !new::is_drawing(path)) {
             Some(other) => {
                 return Err(Failure::Usage(format!(
@@ -46,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
                     other.display()
                 )));
             }
-            None => Opened::Begun(begin(drawings, verbosity)?),
+            None => Opened::Begun(begin(drawings, arguments.cells, verbosity)?),
         },
     };
     let explorer = Explorer::open(opened, Some(arguments.port).filter(|port| *port != 0))?;
@@ -64,7 +76,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
 }
 
 /// Begins a scene for some drawings, in a temporary folder. Its poses have no places of their own: they are laid out when they are mapped.
-fn begin(drawings: &[PathBuf], verbosity: Verbosity) -> anyhow::Result<Begun> {
+fn begin(drawings: &[PathBuf], cells: Option<Grid>, verbosity: Verbosity) -> anyhow::Result<Begun> {
     let temporary = tempfile::Builder::new()
         .prefix("inbetween-")
         .tempdir()
@@ -76,7 +88,7 @@ fn begin(drawings: &[PathBuf], verbosity: Verbosity) -> anyhow::Result<Begun> {
     let plan = new::plan(&new::Arguments {
         dir: dir.clone(),
         poses: drawings.to_vec(),
-        cells: None,
+        cells,
         force: false,
     })?;
     for note in &plan.notes {

@@ -8,9 +8,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use inbetween::export::svg_text;
+use inbetween::export::{png_bytes, svg_text};
 use inbetween::math::Point;
 
+use inbetween::render::Frame;
 use inbetween::scene::Scene;
 use serde_json::{Value, json};
 use tungstenite::protocol::Role;
@@ -78,8 +79,15 @@ impl Explorer {
 
     /// Explores the scene of a folder.
     fn within(folder: tempfile::TempDir) -> Self {
+        Self::started(folder, &["scene.toml"])
+    }
+
+    /// Explores what the arguments name, in a folder.
+    fn started(folder: tempfile::TempDir, arguments: &[&str]) -> Self {
         let mut child = inbetween()
-            .args(["explore", "scene.toml", "--no-open"])
+            .args(["explore", "--no-open"])
+            .args(arguments)
+            .env("TMPDIR", folder.path())
             .current_dir(folder.path())
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
@@ -722,4 +730,94 @@ fn the_drawing_can_be_taken_hold_of() {
     assert_eq!((grid[0], grid[1], grid.len()), (8, 4, 3 + 8 * 4 * grid[2] as usize));
     let validity = explorer.get("api/validity?box=-1,-1,1,1&columns=4&rows=3").words();
     assert_eq!((validity[0], validity[1], validity.len()), (4, 3, 2 + 3 * 12));
+}
+
+/// A folder with a picture of a red disc beside a small one, as `drawing.png`; twice side by side as `sheet.png`.
+fn folder_of_drawings() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = |places: &[f64]| {
+        let width = 120 * places.len();
+        let mut frame = Frame::filled(width, 100, [0; 4]);
+        for (k, pixel) in frame.pixels.iter_mut().enumerate() {
+            let (x, y) = ((k % width) as f64 + 0.5, (k / width) as f64 + 0.5);
+            let is_in = |a: f64, b: f64, radius: f64| (x - a).hypot(y - b) < radius;
+            if places
+                .iter()
+                .any(|left| is_in(left + 45.0, 55.0, 30.0) || is_in(left + 95.0, 20.0, 8.0))
+            {
+                *pixel = [200, 40, 40, 255];
+            }
+        }
+        png_bytes(&frame).expect("encoded")
+    };
+    std::fs::write(folder.path().join("drawing.png"), picture(&[0.0])).expect("written");
+    std::fs::write(folder.path().join("sheet.png"), picture(&[0.0, 125.0])).expect("written");
+    folder
+}
+
+#[test]
+fn what_was_taken_for_the_figure_is_told_and_can_be_corrected() {
+    let folder = folder_of_drawings();
+    std::fs::copy(folder.path().join("drawing.png"), folder.path().join("other.png")).expect("copied");
+    let explorer = Explorer::started(folder, &["drawing.png", "other.png"]);
+    explorer.settled();
+    let figure = || explorer.get("api/figure?layer=0&pose=0").json();
+    let roles = |figure: &Value| -> Vec<String> {
+        let pieces = figure["pieces"].as_array().expect("pieces");
+        pieces
+            .iter()
+            .map(|piece| piece["role"].as_str().expect("a role").to_owned())
+            .collect()
+    };
+    let found = figure();
+    assert_eq!(
+        (&found["name"], &found["taken"]),
+        (&json!("drawing"), &json!("alpha")),
+        "{found}"
+    );
+    assert_eq!(roles(&found), ["body", "part"]);
+    // The sheet is the drawing's file, or smaller as asked.
+    let sheet = explorer.get("api/sheet?layer=0&pose=0&max=60");
+    assert_eq!((sheet.status, &sheet.body[1..4]), (200, b"PNG".as_slice()));
+    let size = |from: usize| u32::from_be_bytes(sheet.body[from..from + 4].try_into().expect("four bytes"));
+    assert_eq!([size(16), size(20)], [60, 50]);
+    // A click leaves a part out.
+    let dropped = explorer.edit(json!([{"op": "mark_part", "pose": "drawing", "list": "drop", "at": [95.0, 20.0]}]));
+    assert_eq!(dropped.status, 200, "{}", String::from_utf8_lossy(&dropped.body));
+    let found = figure();
+    assert_eq!(roles(&found), ["body", "dropped"], "{found}");
+    assert_eq!(found["drop"], json!([[95.0, 20.0]]));
+    // Where nothing is drawn there is nothing to keep, nor is there a drawing of another number.
+    assert_ne!(explorer.get("api/figure?layer=0&pose=0&keep=10,10").status, 200);
+    assert_ne!(explorer.get("api/figure?layer=0&pose=7").status, 200);
+    assert_ne!(explorer.get("api/sheet?layer=0&pose=0&max=wide").status, 200);
+}
+
+#[test]
+fn drawings_are_kept_in_a_folder_when_that_is_asked_for() {
+    let explorer = Explorer::started(folder_of_drawings(), &["sheet.png", "--cells", "2x1"]);
+    let state = explorer.settled();
+    assert_eq!(state["temporary"], true, "{state}");
+    assert_ne!(explorer.post("api/keep", &json!({"folder": " "})).status, 200);
+    let kept = explorer.folder.path().join("kept");
+    let answer = explorer.post("api/keep", &json!({ "folder": kept }));
+    assert_eq!(answer.status, 200, "{}", String::from_utf8_lossy(&answer.body));
+    let scene = Scene::open(&kept.join("scene.toml")).expect("a scene");
+    assert_eq!(scene.poses.len(), 2);
+    let there = std::fs::read(kept.join("sheet.png")).expect("a drawing");
+    assert_eq!(
+        there,
+        std::fs::read(explorer.folder.path().join("sheet.png")).expect("the original")
+    );
+    // It has a folder now, and edits go there.
+    assert_ne!(
+        explorer
+            .post("api/keep", &json!({"folder": explorer.folder.path().join("again")}))
+            .status,
+        200
+    );
+    let moved = explorer.edit(json!([{"op": "set_pose", "pose": "sheet-1", "key": "mirror", "value": true}]));
+    assert_eq!(moved.status, 200, "{}", String::from_utf8_lossy(&moved.body));
+    let text = std::fs::read_to_string(kept.join("scene.toml")).expect("readable");
+    assert!(text.contains("mirror = true"), "{text}");
 }
