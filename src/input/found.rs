@@ -305,7 +305,11 @@ fn on_background(
         }
     };
     drop((drawn, contrast));
-    let inside: Vec<bool> = outside.iter().map(|outside| !outside).collect();
+    let inside: Vec<bool> = outside
+        .par_iter()
+        .with_min_len(1 << 14)
+        .map(|outside| !outside)
+        .collect();
     if borders_covered(&inside, width, 0.0) == 4 {
         notes.push(InputNote::FillsCanvas);
     }
@@ -322,15 +326,20 @@ fn on_background(
 
 /// Takes away what is drawn only faintly, all by itself: grain of the paper, ringing, smudges.
 fn leave_out_grain(coverage: &mut [f32], drawn: &mut [bool], contrast: &[u8], width: usize, faintest: u8) {
-    let mut strengths: Vec<u8> = (0..drawn.len())
-        .filter(|&at| drawn[at])
-        .map(|at| contrast[at])
-        .collect();
-    if strengths.is_empty() {
+    let mut strengths = [0_usize; 256];
+    for (contrast, _) in contrast.iter().zip(drawn.iter()).filter(|(_, drawn)| **drawn) {
+        strengths[usize::from(*contrast)] += 1;
+    }
+    let count: usize = strengths.iter().sum();
+    if count == 0 {
         return;
     }
-    let high = strengths.len() * 9 / 10;
-    let strong = f64::from(*strengths.select_nth_unstable(high).1);
+    let mut up_to = 0;
+    let strong = strengths.iter().position(|count_of| {
+        up_to += count_of;
+        up_to > count * 9 / 10
+    });
+    let strong = strong.unwrap_or(255) as f64;
     let least = (GRAIN_SHARE * strong).max(2.0 * f64::from(faintest)).min(strong);
     for region in regions(drawn, width) {
         if region.pixels(width).all(|at| f64::from(contrast[at]) < least) {
@@ -342,7 +351,8 @@ fn leave_out_grain(coverage: &mut [f32], drawn: &mut [bool], contrast: &[u8], wi
 }
 
 fn drawn(coverage: &[f32], threshold: f32) -> Vec<bool> {
-    coverage.iter().map(|share| *share >= threshold).collect()
+    let drawn = coverage.par_iter().with_min_len(1 << 14);
+    drawn.map(|share| *share >= threshold).collect()
 }
 
 #[cfg(test)]

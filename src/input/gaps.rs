@@ -131,9 +131,10 @@ impl<'a> Bare<'a> {
             peak: Vec::new(),
         };
         let mut gaps: Vec<(Bridge, usize, usize)> = Vec::new();
+        let mut beside: Vec<usize> = Vec::new();
         for at in order.iter().map(|at| *at as usize) {
             let own = distance[at];
-            let mut beside: Vec<usize> = Vec::new();
+            beside.clear();
             scene.for_each_neighbour(at, |other| {
                 if basin_of[other] != NONE {
                     let root = basins.root(basin_of[other]);

@@ -112,8 +112,9 @@ pub(super) fn fill(coverage: &mut [f32], outside: &[bool], width: usize, thresho
 /// edge, where the paper shines through, followed inwards as long as coverage rises.
 pub(super) fn kept(coverage: &[f32], outside: &[bool], width: usize, radius: usize) -> Vec<u8> {
     let mut kept: Vec<u8> = coverage
-        .iter()
+        .par_iter()
         .zip(outside)
+        .with_min_len(1 << 14)
         .map(|(share, outside)| if *outside { in_bytes(*share) } else { u8::MAX })
         .collect();
     let is_rim = |at: &usize| !outside[*at] && touches(outside, *at, width);

@@ -3,9 +3,12 @@
 //! Which pixels are drawn -> [`Ink`], [`Enclosed`]. Gaps (module `gaps`) are looked for on at most [`GAP_SIDE`] pixels a side. A gap too
 //! wide to be bridged, but not much wider, is named with the setting that would bridge it.
 
+use rayon::prelude::*;
+
 use super::enclosure::{flood, outer_border};
 use super::figure::is_line_drawing;
 use super::gaps::{Bare, Bridge};
+use super::runs::Runs;
 use super::{BitmapOptions, InputNote};
 use crate::math::Point;
 
@@ -31,14 +34,27 @@ impl Ink {
 
     pub(super) fn measure(drawn: &[bool], width: usize) -> Option<Self> {
         let height = drawn.len() / width.max(1);
+        let runs = Runs::of(drawn, width, |drawn| *drawn);
         let (mut in_columns, mut in_rows) = (vec![0_usize; width], vec![0_usize; height]);
-        let mut sides = 0_usize;
-        for (at, _) in drawn.iter().enumerate().filter(|(_, drawn)| **drawn) {
-            let (x, y) = (at % width, at / width);
-            in_columns[x] += 1;
-            in_rows[y] += 1;
-            sides += usize::from(x == 0 || !drawn[at - 1]) + usize::from(x + 1 == width || !drawn[at + 1]);
-            sides += usize::from(y == 0 || !drawn[at - width]) + usize::from(y + 1 == height || !drawn[at + width]);
+        // Along a row every run has two sides, along a column every change of what is drawn is one.
+        let mut sides = 2 * runs.all().len();
+        for run in runs.all() {
+            in_rows[run.row()] += run.len();
+        }
+        let row = |y: Option<usize>| y.and_then(|y| drawn.get(y * width..(y + 1) * width));
+        sides += (0..=height)
+            .into_par_iter()
+            .map(|y| match (row(y.checked_sub(1)), row(Some(y))) {
+                (Some(above), Some(below)) => above.iter().zip(below).filter(|(a, b)| a != b).count(),
+                (one, other) => one
+                    .or(other)
+                    .map_or(0, |row| row.iter().filter(|drawn| **drawn).count()),
+            })
+            .sum::<usize>();
+        for run in runs.all() {
+            for count in &mut in_columns[run.columns()] {
+                *count += 1;
+            }
         }
         let area: usize = in_rows.iter().sum();
         if area == 0 {
@@ -132,14 +148,12 @@ pub(super) fn enclose(drawn: &[bool], width: usize, ink: &Ink, options: &BitmapO
     let is_thin = is_line_drawing(ink.line_width, ink.diagonal, 1.0);
     let ((bridged, outside), wide) =
         rayon::join(|| with(options.gap), || is_thin.then(|| with(NAMED_GAP * options.gap)));
-    let inside = outside.iter().filter(|outside| !**outside).count();
-    let bare = (0..outside.len()).filter(|&at| !outside[at] && !drawn[at]).count();
+    let (inside, bare) = counted(&outside, drawn);
     let (mut open, mut bare_share) = (None, bare as f64 / inside.max(1) as f64);
     if let Some((wide, outside)) = wide {
-        let more = outside.iter().filter(|outside| !**outside).count();
+        let (more, bare) = counted(&outside, drawn);
         if more as f64 > NAMED_GROWTH * inside as f64 {
             let widest = wide.into_iter().max_by(|a, b| a.length().total_cmp(&b.length()));
-            let bare = (0..outside.len()).filter(|&at| !outside[at] && !drawn[at]).count();
             // A line drawing whose outline is open is one nevertheless.
             bare_share = bare_share.max(bare as f64 / more.max(1) as f64);
             open = widest.map(|bridge| (bridge, f64::from(bridge.length()) / ink.diagonal));
@@ -152,6 +166,20 @@ pub(super) fn enclose(drawn: &[bool], width: usize, ink: &Ink, options: &BitmapO
         bridged,
         open,
     }
+}
+
+/// How many pixels are not outside, and how many of these are not drawn.
+fn counted(outside: &[bool], drawn: &[bool]) -> (usize, usize) {
+    let chunks = outside.par_chunks(1 << 16).zip(drawn.par_chunks(1 << 16));
+    let counts = chunks.map(|(outside, drawn)| {
+        let inside = outside.iter().filter(|outside| !**outside).count();
+        let bare = outside
+            .iter()
+            .zip(drawn)
+            .filter(|(outside, drawn)| !**outside && !**drawn);
+        (inside, bare.count())
+    });
+    counts.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
 }
 
 /// A mask made smaller by a whole number: what is drawn anywhere in a pixel's square is drawn.
