@@ -3,6 +3,7 @@
 //! ```text
 //! inbetween explore cat/scene.toml
 //! inbetween explore walk1.png walk2.png walk3.png
+//! inbetween explore walk.png --cells 4x2
 //! ```
 //!
 //! The command prints an address, opens the browser there and serves the page until it is stopped with Ctrl-C. Only this machine can reach it, and
