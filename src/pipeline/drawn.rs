@@ -43,6 +43,10 @@ impl Guide for RegistrationGuide {
     fn carried(&self, pose: usize, place: Point) -> Option<Point> {
         self.registration.carried(pose, place)
     }
+
+    fn trust(&self, pose: usize, place: Point) -> f64 {
+        self.registration.trust(pose, place)
+    }
 }
 
 /// The appearances of some drawings.

@@ -41,8 +41,18 @@ pub(super) struct Registered {
     pub(super) frames: Vec<Matrix>,
     /// By vertex, how much the drawings still differ around it.
     pub(super) residuals: Vec<f32>,
+    /// By vertex, what its place was worth in the last solve: the mean of its trust over directions.
+    pub(super) trusts: Vec<f64>,
     /// The number of the beginning.
     pub(super) beginning: usize,
+}
+
+/// A level's end.
+struct Settled {
+    places: Vec<Point>,
+    fits: Vec<Fit>,
+    /// As of [`Registered`].
+    trusts: Vec<f64>,
 }
 
 impl<'a> Pair<'a> {
@@ -84,18 +94,19 @@ impl<'a> Pair<'a> {
         }
         let rigid = Rigid::new(self.lattice, beginning.form);
         let mut places = self.stiffened(&rigid, &beginning.places)?;
-        let mut residuals = Vec::new();
+        let (mut residuals, mut trusts) = (Vec::new(), Vec::new());
         let mut coarsest = Some(coarsest);
         for (level, template) in LEVELS.iter().zip(templates) {
             let image = coarsest.take().unwrap_or_else(|| self.pose.blurred(level.deviation_px));
-            let fits;
-            (places, fits) = self.level(level, template, &image, &rigid, places)?;
-            residuals = fits.iter().map(|fit| fit.residual).collect();
+            let settled = self.level(level, template, &image, &rigid, places)?;
+            residuals = settled.fits.iter().map(|fit| fit.residual).collect();
+            (places, trusts) = (settled.places, settled.trusts);
         }
         Ok(Registered {
             frames: rigid.frames(&places, 0),
             places,
             residuals,
+            trusts,
             beginning: beginning.number,
         })
     }
@@ -160,11 +171,11 @@ impl<'a> Pair<'a> {
         image: &ChannelImage,
         rigid: &Rigid,
         mut places: Vec<Point>,
-    ) -> Result<(Vec<Point>, Vec<Fit>), RegistrationError> {
+    ) -> Result<Settled, RegistrationError> {
         let window = Window::new(level.reach * PIXELS_PER_UNIT, level.step * PIXELS_PER_UNIT);
         let image = ByteImage::new(image, window.reach);
         let floor = Matrix::identity() * (0.25 * window.step * window.step);
-        let mut fits = Vec::new();
+        let (mut fits, mut trusts) = (Vec::new(), Vec::new());
         for _ in 0..level.iterations {
             let frames = rigid.frames(&places, 1);
             fits = template.fits(&image, &places, &frames, &window, level.temperature);
@@ -176,6 +187,7 @@ impl<'a> Pair<'a> {
                 trust.push(inverse * confidence * self.lattice.spacing.powi(2));
             }
             self.pin(rigid, &places, &mut targets, &mut trust);
+            trusts = trust.iter().map(|trust| 0.5 * trust.trace()).collect();
             let targets = Targets {
                 places: &targets,
                 trust: &trust,
@@ -187,6 +199,6 @@ impl<'a> Pair<'a> {
                 break;
             }
         }
-        Ok((places, fits))
+        Ok(Settled { places, fits, trusts })
     }
 }

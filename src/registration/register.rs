@@ -17,7 +17,10 @@ use crate::solve::SolveError;
 /// The lattice's spacing, in figure units.
 const SPACING: f64 = 0.022;
 
-/// The trust in a pair of points that is certain and in one that is likely, beside some 100 of a vertex whose place is clear.
+/// The trust in a vertex whose place is clear.
+const CLEAR: f64 = 100.0;
+
+/// The trust in a pair of points that is certain and in one that is likely.
 const CERTAIN: f64 = 1e5;
 const LIKELY: f64 = 1000.0;
 
@@ -104,6 +107,7 @@ struct RegisteredPose {
     appearance: Arc<Appearance>,
     places: Vec<Point>,
     frames: Vec<Matrix>,
+    trusts: Vec<f64>,
     explained: Explained,
     residual: f64,
 }
@@ -121,6 +125,21 @@ impl Registration {
         Some(registered.appearance.to_source(carried))
     }
 
+    /// How surely a place of the reference is where [`carried`](Self::carried) has it: about 1 where what is drawn there is found, more where it is known
+    /// besides, by landmarks or by names, and near 0 where nothing is drawn that could tell, or something else.
+    #[must_use]
+    pub fn trust(&self, pose: usize, place: Point) -> f64 {
+        let of_cell = || {
+            let registered = self.poses.get(pose)?.as_ref()?;
+            let (cell, _) = self
+                .searched
+                .lattice
+                .cell_at(self.searched.reference.to_pixels(place))?;
+            registered.trusts.get(cell)
+        };
+        of_cell().map_or(0.0, |trust| trust / CLEAR)
+    }
+
     /// How much the drawing of `pose` differs from what the reference shows at the same places: 0 for equal drawings, at most 1.2.
     #[must_use]
     pub fn residual(&self, pose: usize) -> Option<f64> {
@@ -134,6 +153,7 @@ impl Registration {
             *own = Arc::new(RegisteredPose {
                 places: theirs.places.clone(),
                 frames: theirs.frames.clone(),
+                trusts: theirs.trusts.clone(),
                 ..own.as_ref().clone()
             });
         }
@@ -195,6 +215,7 @@ impl Searched {
             appearance: Arc::clone(appearance),
             places: registered.places,
             frames: registered.frames,
+            trusts: registered.trusts,
         })
     }
 }

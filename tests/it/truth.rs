@@ -69,7 +69,7 @@ fn a_clown_needs_no_landmark() {
 #[test]
 fn a_head_that_turns_is_mostly_found() {
     // Hair slides over the forehead: what a mesh cannot follow is what landmarks are for.
-    assert!(off("face") <= 0.25);
+    assert!(off("face") <= 0.2);
 }
 
 #[test]

@@ -10,7 +10,7 @@
 //! vertices held, shortened until the energy falls and all triangles are positive. A vertex around which nothing moves any
 //! more is passed over: most come to rest in a few sweeps, a few take many.
 //!
-//! Vertices with a target (module `guide`) are drawn to it besides, by `TARGET_WEIGHT * |p - target|^2` in squares of the pose's size: the
+//! Vertices with a target (module `guide`) are drawn to it besides, by `TARGET_WEIGHT * trust * |p - target|^2` in squares of the pose's size: the
 //! targets say what corresponds, and the rest of the energy keeps the triangles well shaped on the way there.
 
 use rayon::prelude::*;
@@ -33,11 +33,19 @@ const STILL: f64 = 0.01;
 const HALVINGS: usize = 6;
 
 /// What the squared distance from a target weighs, with lengths in roots of the pose's area. Displaced by a small share `d`, a vertex costs about
-/// `4 d^2` in distortion, however fine the mesh is: with this weight distortion moves it by a fortieth of what it would.
-const TARGET_WEIGHT: f64 = 160.0;
+/// `4 d^2` in distortion, however fine the mesh is: with this weight distortion moves it by an eightieth of what it would.
+const TARGET_WEIGHT: f64 = 320.0;
+
+/// Where a vertex should be.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Target {
+    pub(super) place: Point,
+    /// How much it weighs, beside one that is clear.
+    pub(super) trust: f64,
+}
 
 /// Per pose, per vertex: where it should be. A pose without targets has none for any vertex.
-pub(super) type Targets = [Option<Vec<Option<Point>>>];
+pub(super) type Targets = [Option<Vec<Option<Target>>>];
 
 /// A triangle `(vertex, a, b)` seen from its moving vertex: what the energy needs.
 #[derive(Clone, Copy)]
@@ -139,7 +147,7 @@ fn rest_shape(poses: &[Vec<Point>], areas: &[f64], mean_area: f64, [vertex, a, b
 struct Star<'a> {
     opposite: &'a [(usize, usize)],
     rests: &'a [Rest],
-    target: Option<Point>,
+    target: Option<Target>,
     /// The root of the pose's area.
     scale: f64,
 }
@@ -215,7 +223,7 @@ const EQUILATERAL: f64 = 3.464_101_615_137_754_4;
 fn energy_at(positions: &[Point], p: Point, star: &Star) -> Option<f64> {
     let mut energy = 0.0;
     if let Some(target) = star.target {
-        energy += TARGET_WEIGHT * (p - target).norm_squared() / (star.scale * star.scale);
+        energy += TARGET_WEIGHT * target.trust * (p - target.place).norm_squared() / (star.scale * star.scale);
     }
     for (&(a, b), rest) in star.opposite.iter().zip(star.rests) {
         let l = local(p, positions[a], positions[b], rest, star.scale);
@@ -232,7 +240,7 @@ fn derivatives(positions: &[Point], p: Point, star: &Star) -> Option<(f64, Point
     let (mut energy, mut gradient, mut hessian) = (0.0, Point::zeros(), Matrix::zeros());
     let scale = star.scale;
     if let Some(target) = star.target {
-        let (aside, weight) = (p - target, TARGET_WEIGHT / (scale * scale));
+        let (aside, weight) = (p - target.place, TARGET_WEIGHT * target.trust / (scale * scale));
         energy += weight * aside.norm_squared();
         gradient += aside * (2.0 * weight);
         hessian += Matrix::identity() * (2.0 * weight);
@@ -292,7 +300,10 @@ mod tests {
         let star = Star {
             opposite: &opposite,
             rests: &rests,
-            target: Some(Point::new(0.3, -0.1)),
+            target: Some(Target {
+                place: Point::new(0.3, -0.1),
+                trust: 1.5,
+            }),
             scale: 1.3,
         };
         let (energy, gradient, hessian) = derivatives(&positions, p, &star).expect("positive");

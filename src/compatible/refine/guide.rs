@@ -1,8 +1,9 @@
 //! A guide says where places of one pose are in the others; the mesh follows it as far as its triangles stay positive.
 
 use super::super::editable::{Curves, EditableMesh};
+use super::distortion::{self, Target};
 use super::star::Stars;
-use super::{distortion, flip, split};
+use super::{flip, split};
 use crate::math::Point;
 use crate::mesh::directed_edges;
 
@@ -12,9 +13,12 @@ const SWEEPS_A_ROUND: usize = 10;
 /// How far from straight the guide may take an edge, as a fraction of the pose's diagonal: two pixels of a drawing of 700.
 const LARGEST_BEND: f64 = 0.003;
 /// Rounds of splitting edges that are bent by more.
-const BEND_ROUNDS: usize = 2;
+const BEND_ROUNDS: usize = 4;
 /// Edges shorter than this share of the length that all are split to are not split further.
-const SHORTEST: f64 = 0.5;
+const SHORTEST: f64 = 0.25;
+/// Between these trust counts: blank places still follow what is around them, and certain ones leave the triangles some say.
+const LEAST_TRUST: f64 = 0.05;
+const MOST_TRUST: f64 = 10.0;
 
 /// Knows where the places of one pose, the reference, are in the others, for instance by what is drawn there.
 pub trait Guide: Sync {
@@ -23,6 +27,13 @@ pub trait Guide: Sync {
 
     /// Where `place` of the reference is in `pose`; `None` where it does not know.
     fn carried(&self, pose: usize, place: Point) -> Option<Point>;
+
+    /// How surely it knows that: 1 where it is clear, more where it is certain, 0 where it is a guess. Where hair slides over a forehead the forehead
+    /// is squeezed, and has to give way.
+    fn trust(&self, pose: usize, place: Point) -> f64 {
+        let _ = (pose, place);
+        1.0
+    }
 }
 
 /// Least distortion with at most `sweeps` sweeps, vertices of the other poses drawn to where the guide has them.
@@ -31,10 +42,15 @@ pub(super) fn minimise(mesh: &mut EditableMesh, stars: &Stars, sweeps: usize, gu
         return distortion::minimise(mesh, stars, sweeps, &[]);
     };
     for _ in 0..sweeps.div_ceil(SWEEPS_A_ROUND) {
-        let targets: Vec<Option<Vec<Option<Point>>>> = (0..mesh.pose_count())
+        let targets: Vec<Option<Vec<Option<Target>>>> = (0..mesh.pose_count())
             .map(|pose| {
                 let places = &mesh.positions[guide.reference()];
-                let carried = |p: &Point| guide.carried(pose, *p);
+                let carried = |p: &Point| {
+                    Some(Target {
+                        place: guide.carried(pose, *p)?,
+                        trust: guide.trust(pose, *p).clamp(LEAST_TRUST, MOST_TRUST),
+                    })
+                };
                 (pose != guide.reference()).then(|| places.iter().map(carried).collect())
             })
             .collect();
