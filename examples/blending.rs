@@ -9,12 +9,13 @@
 //! - `morphing-against-deformation.png`: one drawing bent towards another by handles, and the morph between the two.
 
 pub(crate) mod common;
+#[path = "common/palette.rs"]
+pub(crate) mod palette;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use inbetween::blend::{BlendOptions, RigidBlend, Stretch};
-use inbetween::export::Palette;
 use inbetween::math::{Point, point};
 use inbetween::pipeline::{LayerSpec, map_layer};
 use inbetween::pose::{HandleDeformation, Mapping};
@@ -24,6 +25,7 @@ use inbetween::texture::texture_weights;
 use tiny_skia::Color;
 
 use common::{Sheet, outline_of};
+use palette::png_with_palette;
 
 /// Columns of one shape's cell, in pixels.
 const CELL_WIDTH: u32 = 184;
@@ -145,21 +147,8 @@ fn morphing_against_deformation(walker: &Cast) -> Result<Sheet, Box<dyn Error>> 
 }
 
 fn save(sheet: Sheet, folder: &Path, name: &str) -> Result<(), Box<dyn Error>> {
-    save_with_palette(&sheet.into_frame(), &folder.join(format!("{name}.png")))
-}
-
-/// Writes a PNG file with a palette, which takes a third of the bytes.
-pub(crate) fn save_with_palette(frame: &Frame, path: &Path) -> Result<(), Box<dyn Error>> {
-    let palette = Palette::for_frames(std::slice::from_ref(frame));
-    let mut encoder = png::Encoder::new(std::fs::File::create(path)?, frame.width as u32, frame.height as u32);
-    encoder.set_color(png::ColorType::Indexed);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_palette(palette.bytes());
-    encoder.set_compression(png::Compression::High);
-    encoder.set_filter(png::Filter::NoFilter);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(&palette.indices(frame))?;
-    Ok(writer.finish()?)
+    let bytes = png_with_palette(&sheet.into_frame())?;
+    Ok(std::fs::write(folder.join(format!("{name}.png")), bytes)?)
 }
 
 /// A shape to be painted.

@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use inbetween::blend::{BlendOptions, RigidBlend};
-use inbetween::export::Palette;
 use inbetween::math::{Point, point};
 use inbetween::outline::{ArcLength, Ring};
 use inbetween::pipeline::{ArtChoice, map_layer};
@@ -19,6 +18,11 @@ use inbetween::pose::Mapping;
 use inbetween::render::Frame;
 use inbetween::scene::{Scene, ShapeModel, ShapeScene};
 use inbetween::weights::{RbfOptions, RbfWeights, WeightProvider};
+
+#[path = "common/palette.rs"]
+mod palette;
+
+use palette::png_with_palette;
 
 type Drawn = Result<(), Box<dyn Error>>;
 
@@ -308,22 +312,6 @@ fn contact_sheet() -> Result<Figure, Box<dyn Error>> {
     Figure::of_picture(&sheet)
 }
 
-/// A PNG file with a palette, which takes a third of the bytes.
-fn with_palette(frame: &Frame) -> Result<Vec<u8>, Box<dyn Error>> {
-    let palette = Palette::for_frames(std::slice::from_ref(frame));
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, frame.width as u32, frame.height as u32);
-    encoder.set_color(png::ColorType::Indexed);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_palette(palette.bytes());
-    encoder.set_compression(png::Compression::High);
-    encoder.set_filter(png::Filter::NoFilter);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(&palette.indices(frame))?;
-    writer.finish()?;
-    Ok(bytes)
-}
-
 /// A figure in the making.
 struct Figure {
     size: [f64; 2],
@@ -342,7 +330,7 @@ impl Figure {
     /// Nothing but a picture.
     fn of_picture(frame: &Frame) -> Result<Self, Box<dyn Error>> {
         let (width, height) = (frame.width, frame.height);
-        let data = BASE64_STANDARD.encode(with_palette(frame)?);
+        let data = BASE64_STANDARD.encode(png_with_palette(frame)?);
         let mut figure = Self {
             size: [width as f64, height as f64],
             text: String::new(),

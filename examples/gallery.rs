@@ -16,6 +16,7 @@ mod stages;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use blending::palette::png_with_palette;
 use inbetween::animation::Background;
 use inbetween::export::{Backdrop, ColourCount, GifWriter, Palette, PendingFile, Repetition, png_bytes};
 use inbetween::pipeline::{ArtChoice, map_layer};
@@ -67,7 +68,10 @@ fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
 fn shape_sheet(name: &str, size: [u32; 2], folder: &Path) -> Drawn {
     let scene = ShapeScene::open(&data(&format!("shapes/{name}")))?;
     let sheet = ShapeModel::open(&scene)?.sheet(&scene, Some(size))?;
-    blending::save_with_palette(&sheet, &folder.join(format!("shape-{name}.png")))
+    Ok(std::fs::write(
+        folder.join(format!("shape-{name}.png")),
+        png_with_palette(&sheet)?,
+    )?)
 }
 
 /// A scene as a GIF that plays for ever.
@@ -127,7 +131,7 @@ fn explained(folder: &Path) -> Drawn {
         height,
         pixels: rows.flat_map(|row| row[..width].iter().copied()).collect(),
     };
-    blending::save_with_palette(&frame, &folder.join("show.png"))
+    Ok(std::fs::write(folder.join("show.png"), png_with_palette(&frame)?)?)
 }
 
 /// From one face to another: above cross-faded as pixels, below as curves.
