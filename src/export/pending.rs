@@ -1,7 +1,7 @@
 //! A file that appears whole or not at all.
 
 use std::fs::File;
-use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::io::{BufWriter, IntoInnerError, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
@@ -16,10 +16,20 @@ const SUFFIX: &str = ".part";
 ///
 /// The temporary file is locked as long as it is written. One without a lock was left by a process that was killed:
 /// [`PendingFile::create`] removes such files beside its own.
+///
+/// A target that is there and no file of a disk (a pipe, a device such as `/dev/null`) is written to at once: a rename would put a file in its
+/// place.
 #[derive(Debug)]
 pub struct PendingFile {
-    temporary: BufWriter<NamedTempFile>,
+    bytes: Destination,
     target: PathBuf,
+}
+
+/// Where bytes go until they are committed.
+#[derive(Debug)]
+enum Destination {
+    Temporary(BufWriter<NamedTempFile>),
+    Device(BufWriter<File>),
 }
 
 impl PendingFile {
@@ -40,6 +50,14 @@ impl PendingFile {
         if target.file_name().is_none() {
             return Err(ExportError::cannot_write(target, "it names no file"));
         }
+        if std::fs::metadata(target).is_ok_and(|there| !there.is_file()) {
+            let device = File::options().write(true).open(target);
+            let device = device.map_err(|error| ExportError::cannot_write(target, error))?;
+            return Ok(Self {
+                bytes: Destination::Device(BufWriter::new(device)),
+                target: target.to_owned(),
+            });
+        }
         loop {
             let temporary = builder()
                 .tempfile_in(folder_of(target))
@@ -51,7 +69,7 @@ impl PendingFile {
                 continue;
             }
             return Ok(Self {
-                temporary: BufWriter::new(temporary),
+                bytes: Destination::Temporary(BufWriter::new(temporary)),
                 target: target.to_owned(),
             });
         }
@@ -65,7 +83,10 @@ impl PendingFile {
 
     /// The path it has until then, for another program to write to.
     pub(super) fn temporary_path(&self) -> &Path {
-        self.temporary.get_ref().path()
+        match &self.bytes {
+            Destination::Temporary(temporary) => temporary.get_ref().path(),
+            Destination::Device(_) => &self.target,
+        }
     }
 
     /// Flushes, and renames the file to its target, replacing what is there.
@@ -81,15 +102,18 @@ impl PendingFile {
     /// # Errors
     /// [`ExportError`] if the system refuses; then none of them is there.
     pub fn commit_all(files: impl IntoIterator<Item = Self>) -> Result<(), ExportError> {
-        let flushed = |file: Self| -> Result<(NamedTempFile, PathBuf), ExportError> {
-            match file.temporary.into_inner() {
-                Ok(temporary) => Ok((temporary, file.target)),
-                Err(error) => Err(ExportError::cannot_write(&file.target, error.error())),
-            }
+        let flushed = |file: Self| -> Result<(Option<NamedTempFile>, PathBuf), ExportError> {
+            let temporary = match file.bytes {
+                Destination::Temporary(bytes) => bytes.into_inner().map(Some).map_err(IntoInnerError::into_error),
+                Destination::Device(mut bytes) => bytes.flush().map(|()| None),
+            };
+            let refusal = |error| ExportError::cannot_write(&file.target, error);
+            Ok((temporary.map_err(refusal)?, file.target))
         };
         let files = files.into_iter().map(flushed).collect::<Result<Vec<_>, _>>()?;
         let mut named: Vec<PathBuf> = Vec::new();
         for (temporary, target) in files {
+            let Some(temporary) = temporary else { continue };
             if let Err(error) = temporary.persist(&target) {
                 for other in named {
                     let _ = std::fs::remove_file(other);
@@ -144,17 +168,26 @@ impl PendingFile {
 
 impl Write for PendingFile {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.temporary.write(bytes)
+        match &mut self.bytes {
+            Destination::Temporary(temporary) => temporary.write(bytes),
+            Destination::Device(device) => device.write(bytes),
+        }
     }
 
     fn flush(&mut self) -> std::io::Result<()> {
-        self.temporary.flush()
+        match &mut self.bytes {
+            Destination::Temporary(temporary) => temporary.flush(),
+            Destination::Device(device) => device.flush(),
+        }
     }
 }
 
 impl Seek for PendingFile {
     fn seek(&mut self, place: SeekFrom) -> std::io::Result<u64> {
-        self.temporary.seek(place)
+        match &mut self.bytes {
+            Destination::Temporary(temporary) => temporary.seek(place),
+            Destination::Device(device) => device.seek(place),
+        }
     }
 }
 
@@ -237,6 +270,24 @@ mod tests {
         std::fs::create_dir(&two).expect("a folder in the way");
         PendingFile::commit_all(pending).expect_err("a folder is in the way");
         assert!(!one.exists());
+        assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_is_written_to_and_stays_one() {
+        use std::os::unix::fs::FileTypeExt as _;
+        let folder = tempfile::tempdir().expect("a folder");
+        let pipe = folder.path().join("pipe");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.expect("mkfifo").success());
+        let reader = {
+            let pipe = pipe.clone();
+            std::thread::spawn(move || std::fs::read(pipe).expect("readable"))
+        };
+        PendingFile::write_whole(&pipe, b"through").expect("written");
+        assert_eq!(reader.join().expect("read"), b"through");
+        assert!(std::fs::metadata(&pipe).expect("there").file_type().is_fifo());
         assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1);
     }
 
