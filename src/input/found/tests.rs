@@ -204,6 +204,32 @@ fn the_edge_keeps_no_fringe_of_paper() {
 }
 
 #[test]
+fn rough_strokes_drawn_twice_are_one_outline() {
+    // Two strokes around a disc that cross one another, each with an open end.
+    let strokes = [(3.0, 0.0, 0.2..5.8), (4.0, 1.3, 2.4..8.0)];
+    let image = RgbaImage::from_fn(240, 240, |column, row| {
+        let (x, y) = (f64::from(column) + 0.5 - 120.0, f64::from(row) + 0.5 - 120.0);
+        let angle = y.atan2(x).rem_euclid(std::f64::consts::TAU);
+        let is_ink = strokes.iter().any(|(waves, phase, range)| {
+            let radius = 80.0 + 5.0 * (waves * angle + phase).sin();
+            let turns = [angle, angle + std::f64::consts::TAU];
+            turns.iter().any(|angle| range.contains(angle)) && (x.hypot(y) - radius).abs() < 1.5
+        });
+        Rgba(if is_ink {
+            [30, 30, 34, 255]
+        } else {
+            [244, 244, 240, 255]
+        })
+    });
+    let drawing = read(&png(&image));
+    assert!(drawing.outline.holes().is_empty() && drawing.parts.is_empty());
+    assert_eq!(drawing.notes, [InputNote::FigureOfLines { bridged: 0 }]);
+    // Seen from outside it is at least as large as either stroke's inside, and no larger than both and their width.
+    let area = drawing.outline.area() / (std::f64::consts::PI * 80.0 * 80.0);
+    assert!((1.0..1.13).contains(&area), "{area}");
+}
+
+#[test]
 fn paper_inside_can_be_made_clear() {
     let options = BitmapOptions {
         paper: PaperRule::Clear,
