@@ -16,9 +16,10 @@ const LARGEST_BEND: f64 = 0.003;
 const BEND_ROUNDS: usize = 4;
 /// Edges shorter than this share of the length that all are split to are not split further.
 const SHORTEST: f64 = 0.25;
-/// Between these trust counts: blank places still follow what is around them, and certain ones leave the triangles some say.
-const LEAST_TRUST: f64 = 0.05;
-const MOST_TRUST: f64 = 10.0;
+/// Between these trust counts: blank places still follow what is around them, and certain ones leave the triangles some say. With ten times as much
+/// edges of hair that slides over a forehead come out kinked.
+const LEAST_TRUST: f64 = 0.2;
+const MOST_TRUST: f64 = 4.0;
 
 /// Knows where the places of one pose, the reference, are in the others, for instance by what is drawn there.
 pub trait Guide: Sync {
