@@ -16,6 +16,8 @@ use image::{GrayImage, ImageBuffer, Luma};
 use imageproc::distance_transform::euclidean_squared_distance_transform;
 use rayon::prelude::*;
 
+use crate::math::DisjointSets;
+
 /// A basin counts as one of its own if it is this many times wider than the passage into it.
 const LEAST_WIDENING: f32 = 1.5;
 /// The most gaps, those within the figure and within the outside included.
@@ -55,24 +57,18 @@ impl Bridge {
 
 /// The basins around the peaks of distance.
 struct Basins {
-    parent: Vec<usize>,
+    sets: DisjointSets,
     /// Their largest distances.
     peak: Vec<f32>,
 }
 
 impl Basins {
-    fn root(&mut self, mut basin: usize) -> usize {
-        while self.parent[basin] != basin {
-            self.parent[basin] = self.parent[self.parent[basin]];
-            basin = self.parent[basin];
-        }
-        basin
+    fn root(&mut self, basin: usize) -> usize {
+        self.sets.root(basin)
     }
 
     fn unite(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        let (kept, gone) = if a < b { (a, b) } else { (b, a) };
-        self.parent[gone] = kept;
+        let [kept, gone] = self.sets.unite(a, b);
         self.peak[kept] = self.peak[kept].max(self.peak[gone]);
     }
 }
@@ -127,7 +123,7 @@ impl<'a> Bare<'a> {
         const NONE: usize = usize::MAX;
         let mut basin_of = vec![NONE; distance.len()];
         let mut basins = Basins {
-            parent: Vec::new(),
+            sets: DisjointSets::new(0),
             peak: Vec::new(),
         };
         let mut gaps: Vec<(Bridge, usize, usize)> = Vec::new();
@@ -144,8 +140,7 @@ impl<'a> Bare<'a> {
                 }
             });
             let Some((&first, rest)) = beside.split_first() else {
-                basin_of[at] = basins.parent.len();
-                basins.parent.push(basins.parent.len());
+                basin_of[at] = basins.sets.add();
                 basins.peak.push(own);
                 continue;
             };
@@ -162,7 +157,7 @@ impl<'a> Bare<'a> {
                     continue;
                 }
                 let known = gaps.iter().any(|(bridge, c, d)| {
-                    let pair = [basins.root_of(*c), basins.root_of(*d)];
+                    let pair = [basins.root(*c), basins.root(*d)];
                     let (x, y) = scene.place(at);
                     pair.contains(&a) && pair.contains(&b) && bridge.distance(x, y) <= bridge.length() + line_width
                 });
@@ -196,15 +191,6 @@ impl<'a> Bare<'a> {
                 (is_outside[0] != is_outside[1]).then_some(bridge)
             })
             .collect()
-    }
-}
-
-impl Basins {
-    fn root_of(&self, mut basin: usize) -> usize {
-        while self.parent[basin] != basin {
-            basin = self.parent[basin];
-        }
-        basin
     }
 }
 

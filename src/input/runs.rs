@@ -3,7 +3,7 @@
 //! A mask -> [`Runs`] -> [`Components`].
 //!
 //! 1. The runs of every row, all rows at once on all processors.
-//! 2. Runs of consecutive rows that lie over one another are united (union by the smaller index, with path halving); whether two that touch
+//! 2. Runs of consecutive rows that lie over one another are united; whether two that touch
 //!    at a corner are, the caller says. After He, Chao, Suzuki 2008, "A run-based two-scan labeling algorithm",
 //!    doi:10.1109/TIP.2008.919369.
 //!
@@ -12,6 +12,8 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
+
+use crate::math::DisjointSets;
 
 /// Consecutive pixels of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -94,7 +96,7 @@ impl Runs {
     /// The components of runs that are joined from side to side, and at corners where `joins` says so, given the row and column of the
     /// upper left one of the four pixels around the corner.
     pub(super) fn components(&self, joins: impl Fn(usize, usize) -> bool) -> Components {
-        let mut parents: Vec<u32> = (0..self.runs.len() as u32).collect();
+        let mut sets = DisjointSets::new(self.runs.len());
         for row in 1..self.starts.len() - 1 {
             let (mut above, mut below) = (self.starts[row - 1], self.starts[row]);
             while above < self.starts[row] && below < self.starts[row + 1] {
@@ -107,7 +109,7 @@ impl Runs {
                     a.first < b.end && b.first < a.end
                 };
                 if is_joined {
-                    unite(&mut parents, above as u32, below as u32);
+                    sets.unite(above, below);
                 }
                 // Between runs of a row there is a pixel at least: what comes after the one that ends first touches no more of the other row's.
                 if a.end < b.end {
@@ -117,15 +119,15 @@ impl Runs {
                 }
             }
         }
-        let mut label_of = vec![0; parents.len()];
+        let mut label_of = vec![0; sets.len()];
         let mut count = 0_u32;
-        for run in 0..parents.len() as u32 {
-            let first = root(&mut parents, run);
-            label_of[run as usize] = if first == run {
+        for run in 0..sets.len() {
+            let first = sets.root(run);
+            label_of[run] = if first == run {
                 count += 1;
                 count - 1
             } else {
-                label_of[first as usize]
+                label_of[first]
             };
         }
         Components {
@@ -151,20 +153,6 @@ fn runs_of_row<T>(row: u32, values: &[T], is_in: &impl Fn(&T) -> bool) -> Vec<Ru
             end: column as u32,
         });
     }
-}
-
-fn root(parents: &mut [u32], mut run: u32) -> u32 {
-    while parents[run as usize] != run {
-        let grandparent = parents[parents[run as usize] as usize];
-        parents[run as usize] = grandparent;
-        run = grandparent;
-    }
-    run
-}
-
-fn unite(parents: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(parents, a), root(parents, b));
-    parents[a.max(b) as usize] = a.min(b);
 }
 
 /// Which component each run belongs to.

@@ -8,6 +8,7 @@
 //! areas, angles) are plain floating point.
 
 pub mod angle;
+mod disjoint_sets;
 pub mod matrix;
 pub mod point;
 mod point3;
@@ -19,6 +20,7 @@ pub mod smooth_step;
 mod vectorised;
 mod wrapped;
 
+pub(crate) use disjoint_sets::DisjointSets;
 pub use matrix::{Matrix, PolarSplit, rotation};
 pub use point::Point;
 pub use point3::Point3;

@@ -7,7 +7,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use crate::math::{Matrix, Point, point};
+use crate::math::{DisjointSets, Matrix, Point, point};
 
 /// Pieces of a cell smaller than this share of a whole one are united with the neighbour along most of their border.
 const LEAST_CELL: f64 = 0.08;
@@ -187,7 +187,7 @@ fn cells(mask: &[bool], grid: &Grid) -> (Vec<[i32; 2]>, Vec<u32>) {
     let sites: Vec<[i32; 2]> = (0..mask.len())
         .map(|k| if mask[k] { site(k) } else { [i32::MIN; 2] })
         .collect();
-    let mut pieces = Pieces::new(mask.len());
+    let mut pieces = DisjointSets::new(mask.len());
     for_each_adjacent(width, height, |a, b| {
         if mask[a] && mask[b] && sites[a] == sites[b] {
             pieces.unite(a, b);
@@ -215,7 +215,7 @@ fn cells(mask: &[bool], grid: &Grid) -> (Vec<[i32; 2]>, Vec<u32>) {
 }
 
 /// Unites every small piece with the neighbour along most of its border.
-fn unite_small(pieces: &mut Pieces, mask: &[bool], grid: &Grid) {
+fn unite_small(pieces: &mut DisjointSets, mask: &[bool], grid: &Grid) {
     let whole = grid.spacing * grid.row_height();
     let mut sizes: BTreeMap<usize, usize> = BTreeMap::new();
     for k in (0..mask.len()).filter(|k| mask[*k]) {
@@ -242,32 +242,6 @@ fn unite_small(pieces: &mut Pieces, mask: &[bool], grid: &Grid) {
     }
     for (small, (_, other)) in longest {
         pieces.unite(small, other);
-    }
-}
-
-/// Sets of pixels, united step by step.
-struct Pieces {
-    parent: Vec<u32>,
-}
-
-impl Pieces {
-    fn new(count: usize) -> Self {
-        Self {
-            parent: (0..count as u32).collect(),
-        }
-    }
-
-    fn root(&mut self, mut k: usize) -> usize {
-        while self.parent[k] as usize != k {
-            self.parent[k] = self.parent[self.parent[k] as usize];
-            k = self.parent[k] as usize;
-        }
-        k
-    }
-
-    fn unite(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b)] = a.min(b) as u32;
     }
 }
 

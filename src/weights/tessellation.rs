@@ -14,7 +14,7 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::walls::Walls;
 use super::{WallProblem, WeightError};
-use crate::math::Point;
+use crate::math::{DisjointSets, Point};
 use crate::mesh::Topology;
 
 /// How far the plane reaches from the layout's centre to each side, in layout diagonals.
@@ -229,8 +229,8 @@ fn cut_open(
 ) -> Option<Tessellation> {
     let topology = Topology::new(positions.len(), triangles.to_vec()).ok()?;
     // Corner 3 t + k of triangle t; corners joined around a vertex without crossing a wall are one vertex.
-    let mut corners = Classes::new(3 * triangles.len());
-    let mut parts = Classes::new(triangles.len());
+    let mut corners = DisjointSets::new(3 * triangles.len());
+    let mut parts = DisjointSets::new(triangles.len());
     let corner = |t: usize, vertex: usize| triangles[t].iter().position(|&v| v == vertex).map(|k| 3 * t + k);
     for (t, neighbours) in topology.neighbours().iter().enumerate() {
         for k in 0..3 {
@@ -238,30 +238,30 @@ fn cut_open(
             let Some(other) = neighbours[k].filter(|&other| other < t && !is_wall(a, b)) else {
                 continue;
             };
-            parts.join(t, other);
+            parts.unite(t, other);
             for vertex in [a, b] {
-                corners.join(corner(t, vertex)?, corner(other, vertex)?);
+                corners.unite(corner(t, vertex)?, corner(other, vertex)?);
             }
         }
     }
     let mut inhabited = vec![false; triangles.len()];
     for (t, triangle) in triangles.iter().enumerate() {
         if triangle.iter().any(|&v| v < pose_count) {
-            inhabited[parts.of(t)] = true;
+            inhabited[parts.root(t)] = true;
         }
     }
     let mut cut = Tessellation {
         positions: positions[..pose_count].to_vec(),
         triangles: Vec::new(),
     };
-    let mut number = vec![usize::MAX; corners.parents.len()];
+    let mut number = vec![usize::MAX; corners.len()];
     for (t, triangle) in triangles.iter().enumerate() {
-        if !inhabited[parts.of(t)] {
+        if !inhabited[parts.root(t)] {
             continue;
         }
         let mut vertices = [0; 3];
         for (k, &vertex) in triangle.iter().enumerate() {
-            let class = corners.of(3 * t + k);
+            let class = corners.root(3 * t + k);
             if number[class] == usize::MAX {
                 // A pose lies on no wall, so that it is one class and keeps its number.
                 number[class] = if vertex < pose_count {
@@ -276,33 +276,6 @@ fn cut_open(
         cut.triangles.push(vertices);
     }
     Some(cut)
-}
-
-/// Things joined into classes.
-struct Classes {
-    parents: Vec<usize>,
-}
-
-impl Classes {
-    fn new(count: usize) -> Self {
-        Self {
-            parents: (0..count).collect(),
-        }
-    }
-
-    fn of(&mut self, mut thing: usize) -> usize {
-        while self.parents[thing] != thing {
-            self.parents[thing] = self.parents[self.parents[thing]];
-            thing = self.parents[thing];
-        }
-        thing
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.of(a), self.of(b));
-        // The smaller number stands for both: nothing depends on the order of joining.
-        self.parents[a.max(b)] = a.min(b);
-    }
 }
 
 fn flushed(coordinate: f64) -> f64 {
