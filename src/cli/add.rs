@@ -59,9 +59,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         let _ = std::fs::remove_file(copy);
     }
     let (name, at, notes) = added?;
-    for note in &notes {
-        verbosity.note(&format!("note: {note}"));
-    }
+    verbosity.notes(&notes);
     let place = at.map_or_else(String::new, |at| {
         let words: Vec<String> = at.iter().map(|v| format!("{v}")).collect();
         format!(" at {}", words.join(", "))

@@ -91,9 +91,7 @@ fn begin(drawings: &[PathBuf], cells: Option<Grid>, verbosity: Verbosity) -> any
         cells,
         force: false,
     })?;
-    for note in &plan.notes {
-        verbosity.note(&format!("note: {note}"));
-    }
+    verbosity.notes(&plan.notes);
     let mut copies = Vec::new();
     for Copy {
         original,

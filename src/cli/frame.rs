@@ -80,9 +80,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         .size
         .map_or(scene.animation.size.map(|side| side as usize), |grid| grid.0);
     let character = scene.character(size, arguments.supersample)?;
-    for note in character.notes() {
-        verbosity.note(&format!("note: {note}"));
-    }
+    verbosity.notes(character.notes());
     let posed = match (&arguments.at, &arguments.weights) {
         (_, Some(Numbers(weights))) => character.posed_of(weights)?,
         (Some(Numbers(place)), None) => character.posed_at(place)?,

@@ -46,9 +46,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     let observed = map_layer_observed(&layer, &mut |stage| clock.begins(stage));
     clock.stop();
     let (mapping, report) = observed.map_err(|error| scene.refusal(error))?;
-    for note in notes.into_iter().chain(report.notes.iter().map(ToString::to_string)) {
-        verbosity.note(&format!("note: {note}"));
-    }
+    verbosity.notes(notes.into_iter().chain(report.notes.iter().map(ToString::to_string)));
     let is_one_of_several = arguments.layer.is_some() || outlines.iter().any(|parts| parts.len() > 1);
     output.write(
         mapping

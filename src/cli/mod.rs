@@ -91,6 +91,13 @@ pub(crate) enum Verbosity {
 }
 
 impl Verbosity {
+    /// Prints what the artist should know, a line each, unless quiet.
+    pub(crate) fn notes<N: std::fmt::Display>(self, notes: impl IntoIterator<Item = N>) {
+        for note in notes {
+            self.note(&format!("note: {note}"));
+        }
+    }
+
     /// Prints a line to standard error, unless quiet.
     pub(crate) fn note(self, line: &str) {
         if self == Self::Normal {

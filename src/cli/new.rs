@@ -63,9 +63,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         copies,
         notes,
     } = plan(arguments)?;
-    for note in &notes {
-        verbosity.note(&format!("note: {note}"));
-    }
+    verbosity.notes(&notes);
     std::fs::create_dir_all(&arguments.dir)
         .with_context(|| format!("cannot make the folder {}", arguments.dir.display()))?;
     let replaced: Vec<bool> = copies.iter().map(|copy| copy.target.exists()).collect();
@@ -282,9 +280,7 @@ fn write(
     let scene = Scene::parse(&scene_text(poses), scene_file)?;
     let (places, refusal) = match Build::new(&scene.spec()?) {
         Ok(build) => {
-            for note in build.notes() {
-                verbosity.note(&format!("note: {note}"));
-            }
+            verbosity.notes(build.notes());
             (build.places().to_vec(), None)
         }
         Err(refusal) => (even_circle(poses.len()), Some(refusal)),

@@ -69,9 +69,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     }
     let scene = scene.with_automatic_places()?;
     let separated = scene.separated()?;
-    for note in &separated.notes {
-        verbosity.note(&format!("note: {note}"));
-    }
+    verbosity.notes(&separated.notes);
     if separated.layers.len() < 2 {
         return Err(anyhow::anyhow!(
             "{}: the drawings have no loose parts; there is nothing to separate",

@@ -40,9 +40,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     let in_scene = || scene.file.display().to_string();
     let provider = scene.weights(None)?;
     let (mapping, report) = map_layer(&layer).map_err(|error| scene.refusal(error))?;
-    for note in notes.into_iter().chain(report.notes.iter().map(ToString::to_string)) {
-        verbosity.note(&format!("note: {note}"));
-    }
+    verbosity.notes(notes.into_iter().chain(report.notes.iter().map(ToString::to_string)));
     let poses: Vec<DiagramPose> = scene
         .poses
         .iter()

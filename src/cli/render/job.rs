@@ -54,9 +54,7 @@ impl Job<'_> {
     /// The scene's character; its notes are told.
     pub(super) fn character(&self) -> anyhow::Result<Character> {
         let character = self.scene.character(self.size(), self.supersample)?;
-        for note in character.notes() {
-            self.verbosity.note(&format!("note: {note}"));
-        }
+        self.verbosity.notes(character.notes());
         Ok(character)
     }
 

@@ -173,9 +173,7 @@ impl Job<'_> {
 
     fn model(&self) -> anyhow::Result<ShapeModel> {
         let model = ShapeModel::open(self.scene).with_context(|| self.scene.file.display().to_string())?;
-        for note in model.notes() {
-            self.verbosity.note(&format!("note: {note}"));
-        }
+        self.verbosity.notes(model.notes());
         Ok(model)
     }
 
