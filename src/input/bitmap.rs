@@ -23,6 +23,7 @@ use super::figure::{FigureKind, FigureRule, PaperRule};
 use super::found::{Found, find};
 use super::iso_line::{Part, Parts};
 use super::loose::{LoosePart, PartOptions, Piece, choose, note_pieces};
+use super::picture::premultiplied;
 use super::{Canvas, Drawing, InputError, InputNote, Picture};
 use crate::math::Point;
 use crate::outline::{Outline, Ring};
@@ -339,17 +340,6 @@ fn without_background(image: &RgbaImage, found: &Found, filled: &[&Outline]) -> 
         pixels,
         origin: Point::zeros(),
         pixels_per_unit: 1.0,
-    }
-}
-
-fn premultiplied([red, green, blue, alpha]: [u8; 4]) -> [u8; 4] {
-    match alpha {
-        0 => [0; 4],
-        u8::MAX => [red, green, blue, alpha],
-        _ => {
-            let times_alpha = |c: u8| ((u16::from(c) * u16::from(alpha) + 127) / 255) as u8;
-            [times_alpha(red), times_alpha(green), times_alpha(blue), alpha]
-        }
     }
 }
 

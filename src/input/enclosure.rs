@@ -11,35 +11,23 @@ pub(super) fn depths(mask: &[bool], width: usize, most: u16) -> Vec<u16> {
     let deepest = most.saturating_add(1);
     let mut depths: Vec<u16> = mask.iter().map(|&inside| if inside { deepest } else { 0 }).collect();
     depths.par_chunks_mut(width).for_each(|row| {
-        let mut depth = 0;
-        for own in row.iter_mut() {
-            depth = (depth + 1).min(*own);
-            *own = depth;
-        }
-        depth = 0;
-        for own in row.iter_mut().rev() {
-            depth = (depth + 1).min(*own);
-            *own = depth;
-        }
+        deepen(row.iter_mut().map(std::slice::from_mut), 1);
+        deepen(row.iter_mut().rev().map(std::slice::from_mut), 1);
     });
-    let rows = depths.len() / width;
+    deepen(depths.chunks_exact_mut(width), width);
+    deepen(depths.chunks_exact_mut(width).rev(), width);
+    depths
+}
+
+/// Lets no depth be more than one step beyond that before it; before the first line, of `width` depths, is the outside.
+fn deepen<'a>(lines: impl Iterator<Item = &'a mut [u16]>, width: usize) {
     let mut before = vec![0_u16; width];
-    let mut sweep = |row: &mut [u16]| {
-        for (own, before) in row.iter_mut().zip(&mut before) {
+    for line in lines {
+        for (own, before) in line.iter_mut().zip(&mut before) {
             *before = (*before + 1).min(*own);
             *own = *before;
         }
-    };
-    for row in depths.chunks_exact_mut(width) {
-        sweep(row);
     }
-    // From below the last row, which is outside.
-    sweep(&mut vec![0; width]);
-    for row in 0..rows {
-        let row = rows - 1 - row;
-        sweep(&mut depths[row * width..(row + 1) * width]);
-    }
-    depths
 }
 
 /// The pixels around one.

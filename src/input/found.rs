@@ -24,11 +24,11 @@ use super::{BitmapOptions, InputError, InputNote};
 /// Alpha, 0 to 255, below which the most opaque pixel counts as nothing.
 const FAINTEST_ALPHA: u8 = 8;
 /// Coverage from which on something is seen.
-const FAINT: f32 = 0.03;
+pub(super) const FAINT: f32 = 0.03;
 /// A soft edge is this many pixels wide outside of the outline at least: edges of drawing programs are one, of scans two or three.
 const SOFT_EDGE: usize = 4;
 /// Share of the figure's area that a soft edge has at least.
-const LEAST_SOFT: f64 = 0.02;
+pub(super) const LEAST_SOFT: f64 = 0.02;
 /// Deviations of the noise beyond which a pixel is drawn on.
 const DRAWN: f32 = 6.0;
 /// The least contrast, 0 to 255, that is drawn: below are the steps of 8-bit values in smooth gradients.
@@ -242,7 +242,7 @@ fn page(inside: &[bool], width: usize) -> Option<Vec<bool>> {
     if area < PAGE_RECTANGLE * side(0, 1) * side(1, 2) {
         return None;
     }
-    // Casts saturate.
+    // Sides are at most 16,384 pixels: it is a few hundred at most.
     let margin = (PAGE_MARGIN * width.min(inside.len() / width) as f64).ceil() as u16 + 1;
     Some(
         depths(&mask, width, margin)

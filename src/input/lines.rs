@@ -40,6 +40,9 @@ impl Ink {
         let mut sides = 2 * runs.all().len();
         for run in runs.all() {
             in_rows[run.row()] += run.len();
+            for count in &mut in_columns[run.columns()] {
+                *count += 1;
+            }
         }
         let row = |y: Option<usize>| y.and_then(|y| drawn.get(y * width..(y + 1) * width));
         sides += (0..=height)
@@ -51,11 +54,6 @@ impl Ink {
                     .map_or(0, |row| row.iter().filter(|drawn| **drawn).count()),
             })
             .sum::<usize>();
-        for run in runs.all() {
-            for count in &mut in_columns[run.columns()] {
-                *count += 1;
-            }
-        }
         let area: usize = in_rows.iter().sum();
         if area == 0 {
             return None;

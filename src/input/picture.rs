@@ -64,8 +64,6 @@ pub fn read_picture(bytes: &[u8]) -> Result<Picture, InputError> {
 /// As [`read_picture`], and if there is no such picture.
 pub fn read_chosen_picture(bytes: &[u8], choice: PictureChoice) -> Result<Picture, InputError> {
     let image = decode_chosen(bytes, choice)?.image;
-    let times = |c: u8, alpha: u8| ((u16::from(c) * u16::from(alpha) + 127) / 255) as u8;
-    let premultiplied = |[r, g, b, a]: [u8; 4]| [times(r, a), times(g, a), times(b, a), a];
     Ok(Picture {
         width: image.width() as usize,
         height: image.height() as usize,
@@ -73,4 +71,16 @@ pub fn read_chosen_picture(bytes: &[u8], choice: PictureChoice) -> Result<Pictur
         origin: Point::zeros(),
         pixels_per_unit: 1.0,
     })
+}
+
+/// A pixel with its colours multiplied by its alpha. Most are clear or opaque.
+pub(super) fn premultiplied([red, green, blue, alpha]: [u8; 4]) -> [u8; 4] {
+    match alpha {
+        0 => [0; 4],
+        u8::MAX => [red, green, blue, alpha],
+        _ => {
+            let times_alpha = |c: u8| ((u16::from(c) * u16::from(alpha) + 127) / 255) as u8;
+            [times_alpha(red), times_alpha(green), times_alpha(blue), alpha]
+        }
+    }
 }

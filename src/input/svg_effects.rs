@@ -9,19 +9,15 @@ use kurbo::Affine;
 use super::InputError;
 use super::bitmap::rows_inside;
 use super::enclosure::depths;
+use super::found::{FAINT, LEAST_SOFT};
 use super::svg::rasterise;
 use crate::math::Point;
 use crate::outline::Outline;
 
 /// The longer side of the picture that is looked at, in pixels.
 const SIDE: f64 = 384.0;
-/// Alpha, 0 to 255, from which on something is seen.
-const FAINT: u8 = 8;
 /// Pixels beside an outline that belong to its rim: they are partly covered.
 const RIM: u16 = 2;
-/// Share of the figure's area from which on a soft edge is worth a word, as with bitmaps.
-const LEAST_SOFT: f64 = 0.02;
-
 /// Whether filters paint much beyond the outlines.
 pub(super) fn are_cut(nodes: &[&usvg::Node], to_user: Affine, outlines: &[&Outline]) -> Result<bool, InputError> {
     if !nodes.iter().any(|node| has_filter(node)) {
@@ -59,7 +55,7 @@ pub(super) fn are_cut(nodes: &[&usvg::Node], to_user: Affine, outlines: &[&Outli
         .pixels
         .iter()
         .zip(far)
-        .filter(|(pixel, far)| pixel[3] >= FAINT && *far > RIM);
+        .filter(|(pixel, far)| f32::from(pixel[3]) >= 255.0 * FAINT && *far > RIM);
     let area = inside.iter().filter(|inside| **inside).count();
     Ok(seen.count() as f64 > LEAST_SOFT * area as f64)
 }
