@@ -6,8 +6,10 @@
 mod alone;
 mod art;
 mod art_parts;
+mod averaged;
 mod bitmap;
 mod border_strip;
+mod box_filter;
 mod canvas;
 mod coverage;
 mod decode;

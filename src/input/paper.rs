@@ -19,6 +19,8 @@ use image::RgbaImage;
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
+use super::averaged::{Colour, STEP, Small};
+use super::box_filter::box_filter;
 use super::enclosure::{Region, border, depths};
 
 /// The longer side of the picture in which the background is looked for, in pixels at most.
@@ -39,8 +41,6 @@ const LEAST_EXPLAINED: f64 = 0.5;
 const MOST_STRETCHES: usize = 16;
 /// Share of the border that a pattern covers at least.
 const PATTERN_SHARE: f64 = 0.2;
-/// The step of 8-bit values, of the range: nothing finer is told apart.
-const STEP: f32 = 1.0 / 255.0;
 /// Radius within which residuals are averaged, as a fraction of the longer side: light and shadow change over larger distances.
 const FOLLOWED: f64 = 0.03;
 /// Share of the neighbourhood that has to be background for what the polynomial leaves there to count in full.
@@ -51,13 +51,9 @@ const PLACE_SIDE: usize = 32;
 const UNEVEN: f32 = 3.0;
 /// How often the field is made better.
 const ROUNDS: usize = 3;
-/// Columns that are averaged together: a few lines of the processor's cache.
-const COLUMNS_AT_ONCE: usize = 16;
 /// From a median absolute residual to the standard deviation of Gaussian noise.
 const DEVIATION_OF_MEDIAN: f32 = 1.4826;
 
-/// A colour, each channel in [0, 1].
-type Colour = [f32; 3];
 /// The coefficients of 1, x, y, x x, x y, y y in each channel.
 type Polynomial = [[f64; 6]; 3];
 
@@ -81,65 +77,10 @@ pub(super) struct Paper {
     pub(super) noise: f32,
 }
 
-/// A picture averaged down.
-#[derive(Debug)]
-struct Small {
-    scale: usize,
-    width: usize,
-    height: usize,
-    pixels: Vec<Colour>,
-    /// Whether all of a pixel lies in the region.
-    region: Vec<bool>,
-}
-
 impl Small {
-    fn new(image: &RgbaImage, region: Option<&[bool]>) -> Self {
-        let (full_width, full_height) = (image.width() as usize, image.height() as usize);
-        let scale = full_width.max(full_height).div_ceil(WORKING_SIDE).max(1);
-        let (width, height) = (full_width.div_ceil(scale), full_height.div_ceil(scale));
-        let mut pixels = vec![Colour::default(); width * height];
-        let mut inside = vec![true; width * height];
-        pixels
-            .par_chunks_mut(width.max(1))
-            .zip(inside.par_chunks_mut(width.max(1)))
-            .enumerate()
-            .for_each(|(row, (pixels, inside))| {
-                let mut sums = vec![[0_u32; 3]; width];
-                let rows = row * scale..((row + 1) * scale).min(full_height);
-                let row_count = rows.len();
-                for y in rows {
-                    let full = y * full_width..(y + 1) * full_width;
-                    let raw = &image.as_raw()[4 * full.start..4 * full.end];
-                    for (sum, raw) in sums.iter_mut().zip(raw.chunks(4 * scale)) {
-                        for pixel in raw.chunks_exact(4) {
-                            for (total, channel) in sum.iter_mut().zip(pixel) {
-                                *total += u32::from(*channel);
-                            }
-                        }
-                    }
-                    if let Some(region) = region {
-                        for (inside, region) in inside.iter_mut().zip(region[full].chunks(scale)) {
-                            *inside &= !region.contains(&false);
-                        }
-                    }
-                }
-                for (column, (pixel, sum)) in pixels.iter_mut().zip(sums).enumerate() {
-                    let columns = scale.min(full_width - column * scale);
-                    *pixel = sum.map(|total| total as f32 * STEP / (columns * row_count) as f32);
-                }
-            });
-        Self {
-            scale,
-            width,
-            height,
-            pixels,
-            region: inside,
-        }
-    }
-
     /// The pixels of the region that are near its border, at most [`MOST_SAMPLES`].
     fn band(&self) -> Vec<usize> {
-        // Casts saturate.
+        // Of at most 1,024 pixels.
         let reach = ((BAND * self.width.min(self.height) as f64).round() as u16).max(1);
         let depths = depths(&self.region, self.width, reach);
         let near: Vec<usize> = (0..depths.len())
@@ -204,7 +145,7 @@ fn unevenness(small: &Small, polynomial: &Polynomial, band: &[usize], reach: f32
 impl Paper {
     /// The background of the picture, or of a region of it (one entry a pixel). `None` if it is not plain.
     pub(super) fn estimate(image: &RgbaImage, region: Option<&[bool]>) -> Option<Self> {
-        let small = Small::new(image, region);
+        let small = Small::new(image, region, WORKING_SIDE);
         let band = small.band();
         if band.is_empty() {
             return None;
@@ -416,7 +357,7 @@ fn follow(small: &Small, polynomial: &Polynomial, deviation: f32) -> Vec<Colour>
             })
             .collect();
         for _ in 0..3 {
-            blur(&mut seen, small.width, radius);
+            box_filter(&mut seen, small.width, radius);
         }
         field.par_iter_mut().enumerate().for_each(|(at, field)| {
             // Where hardly any background is seen nearby, the polynomial says what it is.
@@ -431,72 +372,6 @@ fn follow(small: &Small, polynomial: &Polynomial, deviation: f32) -> Vec<Colour>
         reach = REACH * (DEVIATION_OF_MEDIAN * median(&mut left)).max(0.5 * STEP);
     }
     field
-}
-
-/// A box filter of `2 radius + 1` pixels along rows, then along columns; outside is nothing.
-fn blur(values: &mut [[f32; 4]], width: usize, radius: usize) {
-    let height = values.len() / width.max(1);
-    let share = 1.0 / (2 * radius + 1) as f32;
-    values
-        .par_chunks_mut(width.max(1))
-        .for_each(|row| running_mean(row, radius, share));
-    let blocks: Vec<Vec<[f32; 4]>> = (0..width.div_ceil(COLUMNS_AT_ONCE))
-        .into_par_iter()
-        .map(|block| {
-            let first = block * COLUMNS_AT_ONCE;
-            let columns = first..(first + COLUMNS_AT_ONCE).min(width);
-            let row_of = |y: usize| &values[y * width + columns.start..y * width + columns.end];
-            let mut sums = vec![[0.0_f64; 4]; columns.len()];
-            let mut means = Vec::with_capacity(columns.len() * height);
-            for y in 0..radius.min(height) {
-                add(&mut sums, row_of(y), 1.0);
-            }
-            for y in 0..height {
-                if y + radius < height {
-                    add(&mut sums, row_of(y + radius), 1.0);
-                }
-                if y > radius {
-                    add(&mut sums, row_of(y - radius - 1), -1.0);
-                }
-                means.extend(sums.iter().map(|sum| sum.map(|total| total as f32 * share)));
-            }
-            means
-        })
-        .collect();
-    values.par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
-        for (row, block) in row.chunks_mut(COLUMNS_AT_ONCE).zip(&blocks) {
-            row.copy_from_slice(&block[y * row.len()..(y + 1) * row.len()]);
-        }
-    });
-}
-
-fn add(sums: &mut [[f64; 4]], row: &[[f32; 4]], sign: f64) {
-    for (sum, value) in sums.iter_mut().zip(row) {
-        for (total, value) in sum.iter_mut().zip(value) {
-            *total += sign * f64::from(*value);
-        }
-    }
-}
-
-fn running_mean(line: &mut [[f32; 4]], radius: usize, share: f32) {
-    let before = line.to_vec();
-    let mut sum = [0.0_f64; 4];
-    let mut add = |value: &[f32; 4], sign: f64| {
-        for (total, value) in sum.iter_mut().zip(value) {
-            *total += sign * f64::from(*value);
-        }
-        sum
-    };
-    for value in before.iter().take(radius) {
-        add(value, 1.0);
-    }
-    for k in 0..line.len() {
-        let mut now = add(before.get(k + radius).unwrap_or(&[0.0; 4]), 1.0);
-        if k > radius {
-            now = add(&before[k - radius - 1], -1.0);
-        }
-        line[k] = now.map(|total| total as f32 * share);
-    }
 }
 
 fn evaluate(small: &Small, polynomial: &Polynomial, pixel: usize) -> Colour {
