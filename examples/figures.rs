@@ -399,7 +399,7 @@ impl Fit {
         }
     }
 
-    /// The same scale, with the middle of `points` in the middle of the cell.
+    /// A fit of this scale, with the middle of `points` in the middle of the cell.
     fn centred(self, points: &[Point]) -> Self {
         let (low, high) = point::bounding_box(points).unwrap_or_default();
         Self {

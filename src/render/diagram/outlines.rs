@@ -52,7 +52,7 @@ impl Placed<'_> {
         self.aside(&self.curve, t)
     }
 
-    /// The same at the rim nearest to a place of the pose: into the hole, which runs the other way round.
+    /// Away from the shape at the rim nearest to a place of the pose: into the hole, whose rim runs the other way round.
     fn holeward(&self, place: Point) -> Option<Point> {
         let nearest = self.holes.iter().map(|rim| (rim, rim.nearest(place)));
         let (rim, (t, _)) = nearest.min_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
