@@ -248,18 +248,19 @@ impl<'a> PictureSampler<'a> {
     /// The picture at a place in its own pixels; clear beyond its border.
     fn bilinear(&self, p: Point) -> [f32; 4] {
         let (x, y) = (p.x - 0.5, p.y - 0.5);
-        let (column, row) = (x.floor(), y.floor());
-        let (u, v) = ((x - column) as f32, (y - row) as f32);
+        let (column, row) = (floored(x), floored(y));
+        let (u, v) = ((x - column as f64) as f32, (y - row as f64) as f32);
         let mut value = [0.0; 4];
         for (i, j, weight) in [
-            (0.0, 0.0, (1.0 - u) * (1.0 - v)),
-            (1.0, 0.0, u * (1.0 - v)),
-            (0.0, 1.0, (1.0 - u) * v),
-            (1.0, 1.0, u * v),
+            (0, 0, (1.0 - u) * (1.0 - v)),
+            (1, 0, u * (1.0 - v)),
+            (0, 1, (1.0 - u) * v),
+            (1, 1, u * v),
         ] {
-            let (x, y) = (column + i, row + j);
-            if x >= 0.0 && y >= 0.0 && x < self.picture.width as f64 && y < self.picture.height as f64 {
-                let pixel = self.picture.pixels[y as usize * self.picture.width + x as usize];
+            // What is negative becomes larger than any picture.
+            let (x, y) = ((column + i) as usize, (row + j) as usize);
+            if x < self.picture.width && y < self.picture.height {
+                let pixel = self.picture.pixels[y * self.picture.width + x];
                 for (value, channel) in value.iter_mut().zip(pixel) {
                     *value += weight * f32::from(channel);
                 }
@@ -267,4 +268,10 @@ impl<'a> PictureSampler<'a> {
         }
         value
     }
+}
+
+/// The largest whole number that is not larger; `f64::floor` is a call of a function where the processor may lack the instruction.
+fn floored(x: f64) -> i64 {
+    let truncated = x as i64;
+    truncated - i64::from(truncated as f64 > x)
 }

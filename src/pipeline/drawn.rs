@@ -16,7 +16,7 @@ use crate::input::Drawing;
 use crate::matching::{HoleTies, Landmark, MatchError, MatchOptions, MirrorHints, RingCandidates};
 use crate::math::Point;
 use crate::outline::{ArcLength, Outline, Ring};
-use crate::registration::{Explained, Pin, Registration, RingPairs, register};
+use crate::registration::{Explained, Pin, Registration, RingPairs, difference, register};
 
 /// From this share of the reference's figure on that is found in a pose, it is the same character in the same colours: drawn anew, two thirds of one
 /// are found at least, of another an eighth at most.
@@ -172,14 +172,19 @@ pub(super) fn match_by_drawing(
     let mut first = candidates
         .settled(&outer, &chosen, &options, &carried)
         .map_err(refusal)?;
-    for (pose, matched) in first.report.poses.iter_mut().enumerate() {
-        // Outlines alone cannot tell a figure that faces the other way from one that leans there. Names and landmarks inside can.
-        matched.looks_mirrored = matched.looks_mirrored
-            && pins[pose].is_empty()
-            && registration.residual(pose).is_some_and(|residual| {
-                looks_reflected(residual, &drawings[pose], &outer[reference], &appearances[reference])
-            });
-    }
+    first
+        .report
+        .poses
+        .par_iter_mut()
+        .enumerate()
+        .for_each(|(pose, matched)| {
+            // Outlines alone cannot tell a figure that faces the other way from one that leans there. Names and landmarks inside can.
+            matched.looks_mirrored = matched.looks_mirrored
+                && pins[pose].is_empty()
+                && registration.residual(pose).is_some_and(|residual| {
+                    looks_reflected(residual, &drawings[pose], &outer[reference], &appearances[reference])
+                });
+        });
     let rim_rings = ordered_holes(names, outlines, known, reference, &carried)?;
     let mut matched = Matched {
         reference,
@@ -247,9 +252,11 @@ pub(super) fn residual(rings: &[Ring; 2], appearances: [&Arc<Appearance>; 2]) ->
         ..MatchOptions::default()
     };
     let candidates = proposed(rings, &appearances, &[], &options).ok()?;
-    let begins = vec![Vec::new(), beginnings(&candidates, 1, &Vec::new())];
-    let (registration, _) = register(&appearances, 0, &begins, &[], None).ok()?;
-    registration.residual(1)
+    difference(
+        [&appearances[0], &appearances[1]],
+        &beginnings(&candidates, 1, &Vec::new()),
+    )
+    .ok()
 }
 
 /// Proposed matches of rings of drawings.

@@ -328,6 +328,6 @@ impl Turning {
 }
 
 /// The mean over the vertices of how much their patches differ.
-fn mean_residual(fits: &[Fit]) -> f64 {
+pub(super) fn mean_residual(fits: &[Fit]) -> f64 {
     fits.iter().map(|fit| f64::from(fit.residual)).sum::<f64>() / fits.len().max(1) as f64
 }

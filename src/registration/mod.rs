@@ -30,5 +30,6 @@ mod rigid;
 mod template;
 mod textures;
 
+pub(crate) use register::difference;
 pub use register::{Explained, Pin, Registration, RegistrationError, RingPairs, register};
 pub use textures::{Embedded, register_textures};

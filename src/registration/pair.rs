@@ -1,5 +1,6 @@
 //! One pose registered to the reference, level after level.
 
+use super::beginning::mean_residual;
 use super::lattice::Lattice;
 use super::levels::{LEVELS, Level};
 use super::register::{Pin, RegistrationError, RingPairs};
@@ -41,6 +42,8 @@ pub(super) struct Registered {
     pub(super) frames: Vec<Matrix>,
     /// By vertex, how much the drawings still differ around it.
     pub(super) residuals: Vec<f32>,
+    /// The mean of the same after the first level.
+    pub(super) coarse_residual: f64,
     /// By vertex, what its place was worth in the last solve: the mean of its trust over directions.
     pub(super) trusts: Vec<f64>,
     /// The number of the beginning.
@@ -79,7 +82,7 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// The pose registered from the best of some beginnings.
+    /// The pose registered from the best of some beginnings, at as many levels as there are templates.
     pub(super) fn registered(
         mut self,
         points: &Template,
@@ -95,17 +98,20 @@ impl<'a> Pair<'a> {
         let rigid = Rigid::new(self.lattice, beginning.form);
         let mut places = self.stiffened(&rigid, &beginning.places)?;
         let (mut residuals, mut trusts) = (Vec::new(), Vec::new());
+        let mut coarse_residual = None;
         let mut coarsest = Some(coarsest);
         for (level, template) in LEVELS.iter().zip(templates) {
             let image = coarsest.take().unwrap_or_else(|| self.pose.blurred(level.deviation_px));
             let settled = self.level(level, template, &image, &rigid, places)?;
             residuals = settled.fits.iter().map(|fit| fit.residual).collect();
+            coarse_residual.get_or_insert_with(|| mean_residual(&settled.fits));
             (places, trusts) = (settled.places, settled.trusts);
         }
         Ok(Registered {
             frames: rigid.frames(&places, 0),
             places,
             residuals,
+            coarse_residual: coarse_residual.unwrap_or_default(),
             trusts,
             beginning: beginning.number,
         })

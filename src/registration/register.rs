@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::beginning::{INSIDE, POINT_PX};
 use super::explained::Found;
 use super::lattice::Lattice;
-use super::levels::LEVELS;
+use super::levels::{LEVELS, Level};
 use super::pair::Pair;
 use super::template::Template;
 use crate::appearance::{Appearance, ChannelImage, PIXELS_PER_UNIT};
@@ -140,7 +140,8 @@ impl Registration {
         of_cell().map_or(0.0, |trust| trust / CLEAR)
     }
 
-    /// How much the drawing of `pose` differs from what the reference shows at the same places: 0 for equal drawings, at most 1.2.
+    /// How much the drawing of `pose` differs from what the reference shows at the same places, both blurred as for the first level: 0 for equal
+    /// drawings, at most 1.2.
     #[must_use]
     pub fn residual(&self, pose: usize) -> Option<f64> {
         Some(self.poses.get(pose)?.as_ref()?.residual)
@@ -167,15 +168,16 @@ impl Registration {
 }
 
 impl Searched {
-    fn new(reference: &Arc<Appearance>) -> Result<Self, RegistrationError> {
+    /// For the first of the levels only, or for all of them.
+    fn new(reference: &Arc<Appearance>, levels: &[Level]) -> Result<Self, RegistrationError> {
         let lattice = Lattice::new(&reference.mask(), reference.size()[0], SPACING * PIXELS_PER_UNIT);
         if lattice.points.is_empty() {
             return Err(RegistrationError::NoFigure);
         }
-        let images: Vec<ChannelImage> = (LEVELS.par_iter())
+        let images: Vec<ChannelImage> = (levels.par_iter())
             .map(|level| reference.blurred(level.deviation_px))
             .collect();
-        let templates = (LEVELS.par_iter().zip(&images))
+        let templates = (levels.par_iter().zip(&images))
             .map(|(level, image)| Template::new(&lattice, image, level.patch_radius * PIXELS_PER_UNIT))
             .collect();
         let coarsest = &images[0];
@@ -199,7 +201,6 @@ impl Searched {
         let pair = Pair::new(&self.lattice, &self.reference, appearance, pins, &self.inside);
         let registered = pair.registered(&self.points, &self.templates, beginnings)?;
         let found = Found::new(&self.lattice, &registered);
-        let residual = registered.residuals.iter().map(|left| f64::from(*left)).sum::<f64>();
         Ok(RegisteredPose {
             beginnings: beginnings.to_vec(),
             pins: pins.to_vec(),
@@ -211,7 +212,7 @@ impl Searched {
                     appearance.to_source(registered.places[found.least]),
                 ],
             },
-            residual: residual / registered.residuals.len().max(1) as f64,
+            residual: registered.coarse_residual,
             appearance: Arc::clone(appearance),
             places: registered.places,
             frames: registered.frames,
@@ -237,7 +238,7 @@ pub fn register(
     let before = before.filter(|before| Arc::ptr_eq(&before.searched.reference, own));
     let searched = match before {
         Some(before) => Arc::clone(&before.searched),
-        None => Arc::new(Searched::new(own)?),
+        None => Arc::new(Searched::new(own, &LEVELS)?),
     };
     let registered = |pose: usize| {
         let appearance = &appearances[pose];
@@ -265,4 +266,18 @@ pub fn register(
         .map(|pose| pose.as_ref().map_or(0, |pose| pose.chosen))
         .collect();
     Ok((Registration { searched, poses }, chosen))
+}
+
+/// How much the second of two drawings differs from the first, as of [`Registration::residual`], registered from the best of some beginnings: what
+/// only a whole registration places is not needed to say which of two drawings is nearer.
+///
+/// # Errors
+/// [`RegistrationError`] if the first has no figure.
+pub(crate) fn difference(
+    [reference, other]: [&Arc<Appearance>; 2],
+    beginnings: &[RingPairs],
+) -> Result<f64, RegistrationError> {
+    Ok(Searched::new(reference, &LEVELS[..1])?
+        .registered(other, beginnings, &[])?
+        .residual)
 }
