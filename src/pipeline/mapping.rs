@@ -10,6 +10,7 @@ use super::note::{Note, NoteKind};
 use super::spec::{LayerRole, LayerSpec};
 use super::triangulation::{self, Labels};
 use super::{MappingReport, PipelineError, Stage, deformed};
+use crate::appearance::Appearance;
 use crate::compatible::{
     CompatibleMesh, Effort, Guide, Simplification, Simplified, TriangulateReport, refine_guided, triangulate_features,
 };
@@ -115,7 +116,12 @@ fn map_drawn(
     let explained: Vec<Option<Explained>> = (0..names.len())
         .map(|pose| boundaries.guide.as_ref()?.registration.explained(pose))
         .collect();
-    notes.extend(notes_on_strangers(&names, matched.reference, &explained));
+    notes.extend(notes_on_strangers(
+        &names,
+        matched.reference,
+        &explained,
+        &boundaries.appearances,
+    ));
     let mut simplified = boundaries.simplified.clone();
 
     begins(Stage::Triangulation);
@@ -186,11 +192,21 @@ fn map_drawn(
     Ok((mapping, report, Arc::clone(&boundaries)))
 }
 
-/// Says which poses show something else than the reference, and where a landmark would say most.
-fn notes_on_strangers(names: &[String], reference: usize, explained: &[Option<Explained>]) -> Vec<Note> {
-    (names.iter().zip(explained))
-        .filter_map(|(name, explained)| {
+/// Says which poses show something else than the reference, and where a landmark would say most. Of two shapes on which nothing is drawn, there is nothing
+/// to be found.
+fn notes_on_strangers(
+    names: &[String],
+    reference: usize,
+    explained: &[Option<Explained>],
+    appearances: &[Arc<Appearance>],
+) -> Vec<Note> {
+    let is_drawn = |pose: usize| appearances.get(pose).is_some_and(|appearance| appearance.is_drawn());
+    (names.iter().zip(explained).enumerate())
+        .filter_map(|(pose, (name, explained))| {
             let explained = explained.filter(|explained| !is_found(explained))?;
+            if !is_drawn(pose) && !is_drawn(reference) {
+                return None;
+            }
             let reference = names[reference].clone();
             Some(Note::on_pose(name, NoteKind::Unlike { reference, explained }))
         })

@@ -6,17 +6,17 @@
 //!
 //! 1. The rows: every vertex of every pose's outline, through the correspondence. So each pose's outline is returned
 //!    exactly when its weight is 1.
-//! 2. For each row and pose the triangle and barycentric coordinates.
-//! 3. Per frame: row k lies at the sum over poses of weight times its mapped point. Where a triangle moves alike in
-//!    all poses this is the blend of the outline in mesh coordinates.
+//! 2. For each row and pose the triangle and barycentric coordinates, and from them its shares of the vertices around it
+//!    ([`SmoothPoints`]): carried by triangles alone, a smooth outline would bend at every edge of the mesh.
+//! 3. Per frame: row k lies at the sum over poses of weight times its mapped point.
 //!
 //! Cost: O(#rows x #poses) a frame, with #rows at most 20,000 a ring.
 
 use rayon::prelude::*;
 
 use crate::matching::Correspondence;
-use crate::math::{Point, wrapped};
-use crate::mesh::{MeshPoint, PointLocator};
+use crate::math::{Point, point, wrapped};
+use crate::mesh::{MeshPoint, PointLocator, SmoothPoints};
 use crate::outline::{ArcLength, Ring};
 use crate::pose::Mapping;
 
@@ -27,17 +27,30 @@ const CLOSEST_ROWS: f64 = 5e-5;
 /// The outlines of N poses in correspondence, fixed to the mesh.
 #[derive(Debug, Clone)]
 pub struct Silhouette {
-    /// A ring: #rows x #poses anchors.
-    rings: Vec<Vec<MeshPoint>>,
-    pose_count: usize,
+    rings: Vec<CarriedRing>,
+}
+
+/// A ring of every pose, by pose.
+#[derive(Debug, Clone)]
+struct CarriedRing {
+    /// #rows anchors a pose.
+    anchors: Vec<Vec<MeshPoint>>,
+    /// The same, carried smoothly.
+    smooth: Vec<SmoothPoints>,
+}
+
+impl CarriedRing {
+    fn row_count(&self) -> usize {
+        self.smooth.first().map_or(0, SmoothPoints::len)
+    }
 }
 
 impl Silhouette {
     /// The silhouette of a mapping. Outer rings correspond by its matching, holes by the mesh's boundary.
     #[must_use]
     pub fn new(mapping: &Mapping) -> Self {
-        let pose_count = mapping.poses.len();
-        let triangles = mapping.poses.topology().triangles();
+        let topology = mapping.poses.topology();
+        let triangles = topology.triangles();
         let positions = mapping.poses.positions().par_iter();
         let locators: Vec<PointLocator> = positions
             .map(|positions| PointLocator::new(triangles, positions))
@@ -60,34 +73,64 @@ impl Silhouette {
                     locator.bind_along(rows.iter().map(|&row| curve.at(correspondence.parameter(pose, row))))
                 })
                 .collect();
-            let by_row = |anchors: Vec<Vec<MeshPoint>>| {
-                let anchors = &anchors;
-                let row = |row: usize| anchors.iter().map(move |of_pose| of_pose[row]);
-                (0..rows.len()).flat_map(row).collect()
+            let carried = |anchors: Vec<Vec<MeshPoint>>| {
+                let of_poses = anchors.par_iter().zip(mapping.poses.positions());
+                CarriedRing {
+                    smooth: of_poses
+                        .map(|(anchors, positions)| SmoothPoints::new(topology, positions, anchors))
+                        .collect(),
+                    anchors,
+                }
             };
             // None: a mesh without triangles has no silhouette.
-            rings.extend(anchors.map(by_row));
+            rings.extend(anchors.map(carried));
         }
-        Self { rings, pose_count }
+        Self { rings }
+    }
+
+    /// How many rings it has: those that all poses have, the outer one first.
+    pub(super) fn ring_count(&self) -> usize {
+        self.rings.len()
+    }
+
+    /// How far the outline of `pose`, carried by the mesh, may lie from the silhouette, across it: the most at the positions `poses` have.
+    pub(super) fn shortfall(&self, pose: usize, poses: &[Vec<Point>]) -> f64 {
+        let of_ring = |(other, ring): (usize, &CarriedRing)| {
+            let Some(anchors) = ring.anchors.get(pose) else {
+                return 0.0;
+            };
+            let positions = &poses[other];
+            let own: Vec<Point> = anchors.iter().map(|anchor| anchor.at(positions)).collect();
+            let away = (0..own.len()).map(|row| {
+                let aside = ring.smooth[other].at(row, positions) - own[row];
+                let along = own[(row + 1) % own.len()] - own[(row + own.len() - 1) % own.len()];
+                let length = along.norm();
+                if length > 0.0 {
+                    point::cross(along, aside).abs() / length
+                } else {
+                    aside.norm()
+                }
+            });
+            away.fold(0.0, f64::max)
+        };
+        let others = (0..poses.len()).filter(|other| *other != pose);
+        let pairs = others.flat_map(|other| self.rings.iter().map(move |ring| (other, ring)));
+        pairs.map(of_ring).fold(0.0, f64::max)
     }
 
     /// The rings of the shape whose mesh is at `positions` and whose poses count with `weights`: outer ring first.
     #[must_use]
     pub fn at(&self, positions: &[Point], weights: &[f64]) -> Vec<Vec<Point>> {
-        self.rings
-            .iter()
-            .map(|anchors| {
-                anchors
-                    .chunks_exact(self.pose_count)
-                    .map(|row| {
-                        row.iter()
-                            .zip(weights)
-                            .filter(|(_, weight)| **weight != 0.0)
-                            .map(|(anchor, weight)| anchor.at(positions) * *weight)
-                            .sum()
-                    })
-                    .collect()
-            })
+        let row = |ring: &CarriedRing, row: usize| -> Point {
+            let poses = ring.smooth.iter().zip(weights);
+            let counted = poses.filter(|(_, weight)| **weight != 0.0);
+            counted
+                .map(|(smooth, weight)| smooth.at(row, positions) * *weight)
+                .sum()
+        };
+        let rings = self.rings.iter();
+        rings
+            .map(|ring| (0..ring.row_count()).map(|k| row(ring, k)).collect())
             .collect()
     }
 }

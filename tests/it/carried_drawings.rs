@@ -166,7 +166,50 @@ fn drawings_without_a_common_name_fade_as_a_whole_within_one_edge() {
     let middle = pixels.pixels[100 * 200 + 100];
     assert!(middle[0].abs_diff(64) <= 1 && middle[3] == 255, "{middle:?}");
     assert_eq!(pixels.pixels[100 * 200 + 5], [0; 4]);
-    assert_eq!(ids(&frame.nodes), ["drawing pose0", "drawing pose1"]);
+    assert_eq!(ids(&frame.nodes), ["drawings"]);
+    let VectorNode::Group(all) = &frame.nodes[0] else {
+        panic!("a group");
+    };
+    assert!(all.clip.is_some());
+    assert_eq!(ids(&all.nodes), ["drawing pose0", "drawing pose1"]);
+}
+
+#[test]
+fn drawings_that_fade_are_of_one_colour_up_to_the_edge_and_keep_their_openings() {
+    // Inside the mesh, the outlines are 10 and 20 away from it: half-way the silhouette is 15 away.
+    let mut mapping = mapping(&[SQUARE, SQUARE]);
+    let inset = |by: f64| {
+        let ring = Ring::new(SQUARE.map(|[x, y]| Point::new(x + by * (1.0 - x / 50.0), y + by * (1.0 - y / 50.0))));
+        Outline::new(ring.expect("a ring"), vec![]).expect("simple")
+    };
+    mapping.outlines = vec![inset(10.0), inset(20.0)];
+    let large = r##"<path fill="#f00" fill-rule="evenodd" d="M10 10H90V90H10ZM40 40V60H60V40Z"/>"##;
+    let small =
+        r##"<rect x="20" y="20" width="60" height="60" fill="#00f"/><circle cx="30" cy="50" r="4" fill="#0f0"/>"##;
+    let (carried, _) = carried(&mapping, &[large, small]);
+    let frame = |weights: [f64; 2]| {
+        let frame = VectorFrame {
+            size: [200, 200],
+            background: None,
+            nodes: carried.frame(&mapping.poses.positions()[0], &weights, &weights),
+        };
+        frame.rasterise(1)
+    };
+    let between = frame([0.5, 0.5]);
+    let at = |pixels: &[[u8; 4]], x: usize, y: usize| pixels[(y + 50) * 200 + x + 50];
+    // Two to the left of the small square, inside the silhouette, and in its middle.
+    let (edge, middle) = (at(&between.pixels, 17, 50), at(&between.pixels, 70, 30));
+    assert_eq!(edge, middle);
+    assert!(
+        middle[0].abs_diff(128) <= 1 && middle[2].abs_diff(128) <= 1,
+        "{middle:?}"
+    );
+    assert_eq!(at(&between.pixels, 13, 50), [0; 4]);
+    // At a pose there is its drawing: no more than that on the outside, and nothing in its opening.
+    let alone = frame([1.0, 0.0]);
+    assert_eq!(at(&alone.pixels, 8, 50), [0; 4]);
+    assert_eq!(at(&alone.pixels, 50, 50), [0; 4]);
+    assert_eq!(at(&alone.pixels, 12, 50), [255, 0, 0, 255]);
 }
 
 #[test]

@@ -14,8 +14,8 @@
 //!    the affine map that carries the element's points best (least squares).
 //!
 //! Drawings that share no id at all are cross-faded as a whole: each a group, the k-th with opacity
-//! `t_k / (t_0 + .. + t_k)`, so that where all are opaque the result is their mean by the texture weights `t`, each
-//! cut by the blended silhouette, so that the edge stays crisp.
+//! `t_k / (t_0 + .. + t_k)`, so that where all are opaque the result is their mean by the texture weights `t`; all together are
+//! cut by the blended silhouette, so that the edge stays crisp, and each is drawn beyond its own edge (module `edge`), so that it is of one colour.
 //!
 //! Limits: a part that is not within the mesh is carried by the affine map of the triangle nearest to it. The widths of lines follow
 //! the weights, not the mesh.
@@ -27,6 +27,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::super::{Camera, ColourBlend, Silhouette};
 use super::binding::PoseMesh;
 use super::correspondence::corresponding;
+use super::edge::{DrawnOutline, Edge, widened};
 use super::order::{merged, most_seen};
 use super::placing::Fit;
 use super::strand::{Carriers, Strand};
@@ -65,8 +66,19 @@ pub struct CarriedDrawing {
 enum Composition {
     /// Side by side; #drawings orders of the nodes, by the drawing that decides.
     Merged(Vec<Vec<usize>>),
-    /// A group a drawing: its id and its nodes.
-    Faded(Vec<(String, Vec<usize>)>, Silhouette),
+    /// A group a drawing.
+    Faded(Vec<Layer>, Silhouette),
+}
+
+/// A drawing that is cross-faded with others.
+#[derive(Debug, Clone)]
+struct Layer {
+    id: String,
+    nodes: Vec<usize>,
+    /// Those of them that lie on its outline.
+    edges: Vec<(usize, Edge)>,
+    /// How far it may fall short of the silhouette.
+    shortfall_px: f64,
 }
 
 /// An element of one or more drawings.
@@ -137,8 +149,22 @@ impl CarriedDrawing {
             .filter(|&drawing| !members(drawing).is_empty())
             .count();
         let composition = if filled > 1 && !is_shared {
-            let groups = (0..drawing_count).map(|drawing| (format!("drawing {}", names[drawing]), members(drawing)));
-            Composition::Faded(groups.collect(), silhouette)
+            let layer = |drawing: usize| {
+                let (pose, members) = (drawn_on[drawing], members(drawing));
+                let outline = DrawnOutline::new(&mapping.outlines[pose], silhouette.ring_count(), &camera);
+                let alone: Vec<f64> = (0..drawing_count).map(|d| f64::from(u8::from(d == drawing))).collect();
+                let on_outline = |&k: &usize| {
+                    let drawn = nodes[k].at(&poses[pose], &alone, 1.0, &camera, ColourBlend::Plain);
+                    Some((k, outline.edge(&drawn)?))
+                };
+                Layer {
+                    id: format!("drawing {}", names[drawing]),
+                    edges: members.iter().filter_map(on_outline).collect(),
+                    shortfall_px: silhouette.shortfall(pose, poses) * camera.scale(),
+                    nodes: members,
+                }
+            };
+            Composition::Faded((0..drawing_count).map(layer).collect(), silhouette)
         } else {
             Composition::Merged(
                 (0..drawing_count)
@@ -180,39 +206,42 @@ impl CarriedDrawing {
         };
         let (shape, seen) = (by_drawing(weights), by_drawing(texture_weights));
         let draw = |k: usize, opacity: f64| {
-            VectorNode::Shape(Box::new(self.nodes[k].at(
-                positions,
-                &shape,
-                opacity,
-                &self.camera,
-                self.blending,
-            )))
+            let node = &self.nodes[k];
+            node.at(positions, &shape, opacity, &self.camera, self.blending)
         };
+        let shown = |shape: VectorShape| VectorNode::Shape(Box::new(shape));
         match &self.composition {
             Composition::Merged(orders) => {
                 let order = orders.get(most_seen(&seen)).map(Vec::as_slice).unwrap_or_default();
-                order.iter().map(|&k| draw(k, self.nodes[k].share(&seen))).collect()
+                (order.iter())
+                    .map(|&k| shown(draw(k, self.nodes[k].share(&seen))))
+                    .collect()
             }
-            Composition::Faded(groups, silhouette) => {
+            Composition::Faded(layers, silhouette) => {
                 let rings: Vec<Vec<Point>> = silhouette
                     .at(positions, weights)
                     .into_iter()
                     .map(|ring| ring.into_iter().map(|p| self.camera.to_pixels(p)).collect())
                     .collect();
                 let mut so_far = 0.0;
-                groups
-                    .iter()
-                    .zip(&seen)
-                    .map(|((id, members), seen)| {
-                        so_far += seen.max(0.0);
-                        VectorNode::Group(VectorGroup {
-                            id: id.clone(),
-                            opacity: if so_far > 0.0 { seen.max(0.0) / so_far } else { 0.0 },
-                            clip: Some(rings.clone()),
-                            nodes: members.iter().map(|&k| draw(k, 1.0)).collect(),
-                        })
+                let drawn = (layers.iter().zip(&seen)).map(|(layer, seen)| {
+                    so_far += seen.max(0.0);
+                    let edges = layer.edges.iter();
+                    let edges = edges.filter_map(|(k, edge)| widened(&draw(*k, 1.0), edge, layer.shortfall_px));
+                    let nodes = layer.nodes.iter().map(|&k| draw(k, 1.0));
+                    VectorNode::Group(VectorGroup {
+                        id: layer.id.clone(),
+                        opacity: if so_far > 0.0 { seen.max(0.0) / so_far } else { 0.0 },
+                        clip: None,
+                        nodes: edges.chain(nodes).map(shown).collect(),
                     })
-                    .collect()
+                });
+                vec![VectorNode::Group(VectorGroup {
+                    id: "drawings".to_owned(),
+                    opacity: 1.0,
+                    nodes: drawn.collect(),
+                    clip: Some(rings),
+                })]
             }
         }
     }

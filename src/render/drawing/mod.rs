@@ -12,6 +12,7 @@ mod alignment;
 mod binding;
 mod carried;
 mod correspondence;
+mod edge;
 mod frame;
 mod order;
 mod placing;

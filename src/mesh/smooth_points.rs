@@ -1,0 +1,235 @@
+//! Points that a mesh carries smoothly: its map without the bends at its edges.
+//!
+//! A mesh moves its places piecewise affinely, and a smooth curve across its edges gets a bend at each of them. Moving least squares (Lancaster and
+//! Salkauskas 1981; for deformation Schaefer, McPhail and Warren 2006) takes the affine map that fits the vertices around a place best instead, the
+//! nearer the more. What comes out is linear in the vertices' positions, so that every place has its shares of them once and for all:
+//!
+//! 1. The vertices within a radius of the place, reached along edges, so that what lies beside it across a gap does not count. The radius is that many
+//!    mean lengths of the edges there.
+//! 2. Weights `q = (1 - (distance / radius)^2)^2`, and the shares of the least-squares affine map at the place.
+//!
+//! *Guarantee*: affine maps are reproduced, so that at the positions at which it was made every place is where it was, to rounding.
+//!
+//! Where too few vertices are near, or all lie along a line, the place stays with its triangle.
+
+use super::{MeshPoint, Topology};
+use crate::math::Point;
+
+/// The radius, in mean lengths of the edges at the place: the least within which there are two vertices in every direction.
+const RADIUS: f64 = 2.0;
+
+/// The least determinant of the second moments of the weighted vertices, relative to the radius: of vertices along a line it is 0, of those within half a disc a
+/// hundredth.
+const LEAST_SPREAD: f64 = 1e-4;
+
+/// Places with their shares of a mesh's vertices.
+#[derive(Debug, Clone, Default)]
+pub struct SmoothPoints {
+    /// Where the shares of each place begin, and where the last end.
+    starts: Vec<usize>,
+    vertices: Vec<u32>,
+    shares: Vec<f64>,
+}
+
+impl SmoothPoints {
+    /// The places of `anchors` where the vertices of the mesh `topology` lie at `positions`.
+    #[must_use]
+    pub fn new(topology: &Topology, positions: &[Point], anchors: &[MeshPoint]) -> Self {
+        let around = Around::new(topology, positions);
+        let mut points = Self {
+            starts: vec![0],
+            ..Self::default()
+        };
+        let mut near = Vec::new();
+        for anchor in anchors {
+            if !around.shares(anchor, &mut near) {
+                near.clear();
+                near.extend(anchor.vertices.iter().copied().zip(anchor.shares));
+            }
+            points.vertices.extend(near.iter().map(|(vertex, _)| *vertex as u32));
+            points.shares.extend(near.iter().map(|(_, share)| *share));
+            points.starts.push(points.vertices.len());
+        }
+        points
+    }
+
+    /// How many places there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Where place `k` is when the mesh's vertices are at `positions`.
+    #[must_use]
+    pub fn at(&self, k: usize, positions: &[Point]) -> Point {
+        let own = self.starts[k]..self.starts[k + 1];
+        let shares = self.vertices[own.clone()].iter().zip(&self.shares[own]);
+        shares.fold(Point::zeros(), |sum, (&vertex, &share)| {
+            sum + positions[vertex as usize] * share
+        })
+    }
+}
+
+/// A mesh and who is next to whom.
+struct Around<'a> {
+    positions: &'a [Point],
+    neighbours: Vec<Vec<usize>>,
+    /// By vertex, the mean length of its edges.
+    lengths: Vec<f64>,
+}
+
+impl<'a> Around<'a> {
+    fn new(topology: &Topology, positions: &'a [Point]) -> Self {
+        let mut neighbours = vec![Vec::new(); positions.len()];
+        for (a, b) in topology.edges() {
+            neighbours[a].push(b);
+            neighbours[b].push(a);
+        }
+        let mean = |(v, near): (usize, &Vec<usize>)| {
+            let sum: f64 = near.iter().map(|&w| (positions[w] - positions[v]).norm()).sum();
+            sum / near.len().max(1) as f64
+        };
+        Self {
+            positions,
+            lengths: neighbours.iter().enumerate().map(mean).collect(),
+            neighbours,
+        }
+    }
+
+    /// Puts the vertices around a place and their shares into `near`; `false` where they do not say how it moves.
+    fn shares(&self, anchor: &MeshPoint, near: &mut Vec<(usize, f64)>) -> bool {
+        let place = anchor.at(self.positions);
+        let lengths = anchor.vertices.iter().zip(anchor.shares);
+        let radius = RADIUS * lengths.map(|(&v, share)| share * self.lengths[v]).sum::<f64>();
+        if !(radius > 0.0 && radius.is_finite()) {
+            return false;
+        }
+        let aside = |v: usize| (self.positions[v] - place) / radius;
+        near.clear();
+        near.extend(anchor.vertices.iter().map(|&v| (v, 0.0)));
+        let mut next = 0;
+        while let Some(&(v, _)) = near.get(next) {
+            next += 1;
+            for &w in &self.neighbours[v] {
+                if aside(w).norm_squared() < 1.0 && near.iter().all(|(known, _)| *known != w) {
+                    near.push((w, 0.0));
+                }
+            }
+        }
+        let mut moments = nalgebra::Matrix3::zeros();
+        for (v, weight) in near.iter_mut() {
+            let aside = aside(*v);
+            let rest = (1.0 - aside.norm_squared()).max(0.0);
+            *weight = rest * rest;
+            let basis = nalgebra::Vector3::new(1.0, aside.x, aside.y);
+            moments += basis * basis.transpose() * *weight;
+        }
+        let sum = moments[(0, 0)];
+        let spread = moments.determinant() / (sum * sum * sum);
+        let Some(inverse) = moments.try_inverse().filter(|_| spread > LEAST_SPREAD) else {
+            return false;
+        };
+        let plane = inverse.column(0).into_owned();
+        for (v, share) in near.iter_mut() {
+            let aside = aside(*v);
+            *share *= plane.x + plane.y * aside.x + plane.z * aside.y;
+        }
+        near.retain(|(_, share)| *share != 0.0);
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::PointLocator;
+
+    /// A strip of squares, each divided in two.
+    fn strip(columns: usize) -> (Topology, Vec<Point>) {
+        let positions: Vec<Point> = (0..3 * (columns + 1))
+            .map(|k| Point::new((k / 3) as f64, (k % 3) as f64))
+            .collect();
+        let squares = (0..columns).flat_map(|column| (0..2).map(move |row| 3 * column + row));
+        let triangles = squares.flat_map(|k| [[k, k + 3, k + 4], [k, k + 4, k + 1]]).collect();
+        (Topology::new(positions.len(), triangles).expect("a mesh"), positions)
+    }
+
+    fn along(topology: &Topology, positions: &[Point], y: f64) -> (Vec<MeshPoint>, SmoothPoints) {
+        let locator = PointLocator::new(topology.triangles(), positions);
+        let places = (0..=80).map(|k| Point::new(0.1 * f64::from(k), y));
+        let anchors = locator.bind_along(places).expect("in the mesh");
+        let smooth = SmoothPoints::new(topology, positions, &anchors);
+        (anchors, smooth)
+    }
+
+    #[test]
+    fn affine_maps_are_reproduced() {
+        let (topology, positions) = strip(8);
+        let (anchors, smooth) = along(&topology, &positions, 0.3);
+        let map = |p: &Point| Point::new(2.0 * p.x - 0.7 * p.y + 3.0, 0.4 * p.x + 1.1 * p.y);
+        let moved: Vec<Point> = positions.iter().map(map).collect();
+        assert_eq!(smooth.len(), anchors.len());
+        for (k, anchor) in anchors.iter().enumerate() {
+            assert!((smooth.at(k, &positions) - anchor.at(&positions)).norm() < 1e-12);
+            assert!((smooth.at(k, &moved) - anchor.at(&moved)).norm() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn a_line_bends_less_where_the_mesh_has_edges() {
+        let (topology, positions) = strip(8);
+        let (anchors, smooth) = along(&topology, &positions, 0.3);
+        // An arc: the mesh turns at every column.
+        let bent: Vec<Point> = (positions.iter())
+            .map(|p| Point::new((10.0 - p.y) * (0.2 * p.x).sin(), (10.0 - p.y) * (0.2 * p.x).cos()))
+            .collect();
+        let sharpest = |at: &dyn Fn(usize) -> Point| {
+            let turn = |k: usize| {
+                let (a, b) = (at(k) - at(k - 1), at(k + 1) - at(k));
+                (a.x * b.y - a.y * b.x).atan2(a.dot(&b)).abs()
+            };
+            (20..60).map(turn).fold(0.0, f64::max)
+        };
+        let (plain, smoothed) = (sharpest(&|k| anchors[k].at(&bent)), sharpest(&|k| smooth.at(k, &bent)));
+        // The arc itself turns by 0.02 from place to place.
+        assert!(smoothed < 0.05 && plain > 4.0 * smoothed, "{plain} {smoothed}");
+    }
+
+    #[test]
+    fn what_lies_beside_across_a_gap_does_not_count_and_a_single_triangle_carries() {
+        let (topology, positions) = strip(8);
+        // The strip once more, right beside it.
+        let count = positions.len();
+        let both: Vec<Point> = positions
+            .iter()
+            .copied()
+            .chain(positions.iter().map(|p| p + Point::new(0.0, 2.1)))
+            .collect();
+        let shifted = topology.triangles().iter().map(|t| t.map(|v| v + count));
+        let triangles: Vec<[usize; 3]> = topology.triangles().iter().copied().chain(shifted).collect();
+        let double = Topology::new(2 * count, triangles).expect("two meshes");
+        let (anchors, smooth) = along(&double, &both, 1.9);
+        let mut moved = both.clone();
+        for p in &mut moved[count..] {
+            p.y += 50.0;
+        }
+        for (k, anchor) in anchors.iter().enumerate() {
+            assert!((smooth.at(k, &moved) - anchor.at(&both)).norm() < 1e-12);
+        }
+        let corner = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Point::from);
+        let single = Topology::new(3, vec![[0, 1, 2]]).expect("a triangle");
+        let anchor = MeshPoint {
+            vertices: [0, 1, 2],
+            shares: [0.2, 0.3, 0.5],
+        };
+        let smooth = SmoothPoints::new(&single, &corner, &[anchor]);
+        let moved = corner.map(|p| p * 3.0);
+        assert!((smooth.at(0, &moved) - anchor.at(&moved)).norm() < 1e-12);
+    }
+}
