@@ -5,6 +5,8 @@
 
 use serde_json::{Value, json};
 
+use super::MotionError;
+
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 const UNSIGNED_BYTE: u32 = 5121;
@@ -143,13 +145,12 @@ pub(super) fn without_empty_lists(document: &mut Value) {
 }
 
 /// Header, JSON chunk, binary chunk.
-pub(super) fn container(document: &Value, mut binary: Vec<u8>) -> Result<Vec<u8>, String> {
+pub(super) fn container(document: &Value, mut binary: Vec<u8>) -> Result<Vec<u8>, MotionError> {
     let mut text = document.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     binary.resize(binary.len().next_multiple_of(4), 0);
     let total = 12 + 8 + text.len() + 8 + binary.len();
-    let total =
-        u32::try_from(total).map_err(|_| "the file would be larger than the format allows (4 GB)".to_owned())?;
+    let total = u32::try_from(total).map_err(|_| MotionError::TooLarge { bytes: total })?;
     let mut bytes = Vec::with_capacity(total as usize);
     bytes.extend(b"glTF");
     bytes.extend(2u32.to_le_bytes());

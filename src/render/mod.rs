@@ -13,6 +13,7 @@ mod colour_blend;
 pub mod coverage;
 pub mod diagram;
 pub mod drawing;
+mod error;
 mod frame;
 mod level;
 mod nearest_seed;
@@ -33,6 +34,7 @@ pub use drawing::{
     CarriedDrawing, CrossFade, Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement,
     PoseArt, Spread, Stop, Stroke, Subpath, VectorFrame, VectorGroup, VectorNode, VectorPicture, VectorShape,
 };
+pub use error::PictureError;
 pub use frame::Frame;
 pub use painter::{PaintOptions, Painter, PoseTexture, Sampling};
 pub use puppet::{Puppet, PuppetFrame, PuppetLayer, PuppetLayerFrame, PuppetPose, PuppetTexture};

@@ -11,6 +11,7 @@ use super::sheet_layout::{CAPTION_PX, Layout};
 use super::view::{View, Window};
 use super::{Frame, ShadedForm, ShadedMesh, shade};
 use crate::math::Point;
+use crate::render::PictureError;
 use crate::render::diagram::canvas::Canvas;
 use rayon::prelude::*;
 
@@ -126,22 +127,26 @@ impl Sheet<'_> {
     /// Draws it.
     ///
     /// # Errors
-    /// A message if there is not one form for each pair of values, or no picture is large enough.
-    pub fn draw(&self) -> Result<Frame, String> {
+    /// [`PictureError`] if there is not one form for each pair of values, or no picture is large enough.
+    pub fn draw(&self) -> Result<Frame, PictureError> {
         let columns = self.across.values.len();
         let rows = self.up.as_ref().map_or(1, |up| up.values.len());
         if columns == 0 || rows == 0 || self.cells.len() != columns * rows {
-            return Err(format!(
-                "{} forms do not fill {columns} columns and {rows} rows",
-                self.cells.len()
-            ));
+            return Err(PictureError::FormCount {
+                forms: self.cells.len(),
+                columns,
+                rows,
+            });
         }
         let points = self.cells.iter().flat_map(|cell| cell.form.positions);
-        let bounds = self.view.bounds(points).ok_or("no form has a finite vertex")?;
+        let bounds = self.view.bounds(points).ok_or(PictureError::NotFinite)?;
         let extent = bounds[1] - bounds[0];
         let layout = Layout::new(columns, rows, self.up.is_some(), [extent.x, extent.y], self.size);
         let [width, height] = layout.size;
-        let mut canvas = Canvas::new(width, height).ok_or("there are too many forms for one picture")?;
+        let too_many = PictureError::TooManyForms {
+            forms: self.cells.len(),
+        };
+        let mut canvas = Canvas::new(width, height).ok_or(too_many)?;
         canvas.fill(
             &rectangle(Point::zeros(), Point::new(width.into(), height.into()), 0.0),
             paper(),
