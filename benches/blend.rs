@@ -117,10 +117,8 @@ fn frames(criterion: &mut Criterion) {
                 .map(|k| 2.0 * (k + 1) as f64 / (count * (count + 1)) as f64)
                 .collect();
             for stretch in [Stretch::Linear, Stretch::Limited, Stretch::Log] {
-                let options = BlendOptions {
-                    stretch,
-                    ..BlendOptions::default()
-                };
+                let mut options = BlendOptions::default();
+                options.stretch = stretch;
                 let blend = RigidBlend::new(&poses, &options).expect("a blend");
                 let (mut scratch, mut positions) = (blend.scratch(), Vec::new());
                 group.bench_function(format!("frame, {count} poses, {stretch:?}"), |b| {

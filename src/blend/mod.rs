@@ -139,6 +139,7 @@ pub struct Region {
 
 /// What [`RigidBlend`] can be told.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct BlendOptions {
     /// Default: [`Reference::Canonical`].
     pub reference: Reference,

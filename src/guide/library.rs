@@ -47,6 +47,10 @@
 //! # }
 //! ```
 //!
+//! Options are set in one way everywhere: made with `default()`, or a specification with its `new` or the like, and then given what is wanted in
+//! their fields, as in `let mut options = BlendOptions::default(); options.stretch = Stretch::Log;`. Later versions can add fields
+//! without breaking what is written so.
+//!
 //! What the command does with drawings by itself is asked for here: [`with_loose_parts`](crate::pipeline::CharacterSpec::with_loose_parts) makes layers
 //! of loose parts, [`with_facings`](crate::pipeline::CharacterSpec::with_facings) settles which way drawings face, and
 //! [`on_canvas`](crate::pipeline::CharacterSpec::on_canvas) lets frames show the drawings' canvas. A character that is being edited is a

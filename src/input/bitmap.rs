@@ -57,6 +57,7 @@ pub enum HoleRule {
 
 /// How a bitmap is read.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct BitmapOptions {
     /// How the figure is told from its sheet. Default: by evidence.
     pub figure: FigureRule,

@@ -38,6 +38,7 @@ pub enum PlaceRule {
 
 /// Which pieces belong to a drawing.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct PartOptions {
     /// What becomes of loose parts. Default: they are handed on.
     pub rule: PartRule,

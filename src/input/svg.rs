@@ -53,6 +53,7 @@ const MARGIN_PX: f64 = 2.0;
 
 /// How an SVG file is read.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct SvgOptions {
     /// The id of the element whose outline is meant. Default: everything that is drawn.
     pub element: Option<String>,

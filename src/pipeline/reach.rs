@@ -39,6 +39,7 @@ const MOST_DAMPING: f64 = 1e12;
 
 /// How hard to search.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ReachOptions {
     /// Places looked at besides the poses' own, for each dimension of the space. Default: 96.
     pub places: usize,

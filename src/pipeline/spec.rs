@@ -316,6 +316,7 @@ pub struct HandleMove {
 ///
 /// In every pose that has it, it is at the outer outline (onto which it is snapped), at the rim of a hole (the same, and these holes are one), or inside.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct LandmarkSpec {
     /// Its name.
     pub name: String,
@@ -325,6 +326,7 @@ pub struct LandmarkSpec {
 
 /// A line that is named on several poses.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct PathSpec {
     /// Its name.
     pub name: String,
@@ -401,6 +403,22 @@ impl LayerSpec {
             unshared_holes: UnsharedHoles::default(),
             role: LayerRole::default(),
         }
+    }
+}
+
+impl LandmarkSpec {
+    /// The landmark of this name, with a place or `None` for each pose of the layer.
+    #[must_use]
+    pub fn new(name: impl Into<String>, at: Vec<Option<Point>>) -> Self {
+        Self { name: name.into(), at }
+    }
+}
+
+impl PathSpec {
+    /// The line of this name, with its points or `None` for each pose of the layer.
+    #[must_use]
+    pub fn new(name: impl Into<String>, at: Vec<Option<Vec<Point>>>) -> Self {
+        Self { name: name.into(), at }
     }
 }
 

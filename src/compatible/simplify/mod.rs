@@ -83,20 +83,6 @@ impl Default for SimplifyOptions {
 }
 
 impl SimplifyOptions {
-    /// The options with another tolerance.
-    #[must_use]
-    pub fn with_tolerance(mut self, tolerance: f64) -> Self {
-        self.tolerance = tolerance;
-        self
-    }
-
-    /// The options with vertices held to corresponding places.
-    #[must_use]
-    pub fn with_drift(mut self, drift: f64) -> Self {
-        self.drift = Some(drift);
-        self
-    }
-
     fn check(&self) -> Result<(), SimplifyError> {
         // Written so that NaN fails too.
         if self.tolerance > 0.0 && self.tolerance.is_finite() {

@@ -56,6 +56,7 @@ impl SampleTiming {
 
 /// How closely keys follow the samples.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct KeyOptions {
     /// How far a control point may be from where it belongs, at any sample, in pixels. Default: 0.25, which no eye sees.
     pub max_error_px: f64,
