@@ -25,9 +25,8 @@ mod simplify;
 mod triangulate;
 
 pub use refine::{Guide, RefineError, RefineOptions, RefineReport, refine, refine_guided};
-pub use simplify::{
-    RingPoint, Simplification, Simplified, SimplifiedAlone, SimplifyError, SimplifyOptions, SimplifyReport, simplify,
-};
+pub use simplify::{RingPoint, Simplified, SimplifyError, SimplifyOptions, SimplifyReport, simplify};
+pub(crate) use simplify::{Simplification, SimplifiedAlone};
 pub use triangulate::{
     Effort, Feature, FeaturePath, Features, PathEnd, TriangulateError, TriangulateReport, triangulate,
     triangulate_features,

@@ -25,9 +25,7 @@
 //! [`Drawing`](crate::input::Drawing), and the options of every stage. A scene file is one way to make it, and this is another:
 //!
 //! ```
-//! use inbetween::animation::Animation;
-//! use inbetween::input::{BitmapOptions, read_pixels};
-//! use inbetween::pipeline::{Character, CharacterSpec, LayerSpec, PoseSpec};
+//! use inbetween::{Animation, BitmapOptions, Character, CharacterSpec, LayerSpec, PoseSpec, read_pixels};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // A bar, wide or narrow; four bytes a pixel, red, green, blue, alpha.

@@ -4,13 +4,13 @@
 //! ([`painter`](Painter)), cut out by the blended full-resolution outline ([`Silhouette`]). Alphas are not
 //! cross-faded, so the edge stays crisp while the colours change: each pose's texture is opaque beyond its own
 //! edge ([`Texture`]), and the one edge of the frame is drawn with the exact area that it covers of each pixel
-//! ([`coverage`]).
+//! (`coverage.rs`).
 
 mod affine_map;
 mod band;
 mod camera;
 mod colour_blend;
-pub mod coverage;
+pub(crate) mod coverage;
 pub mod diagram;
 pub mod drawing;
 mod error;
@@ -21,10 +21,10 @@ mod nearest_texel;
 mod painter;
 pub mod puppet;
 mod puppet_texture;
-pub mod raster;
+pub(crate) mod raster;
 mod reached;
 mod sampler;
-pub mod shaded;
+pub(crate) mod shaded;
 mod silhouette;
 mod texture;
 

@@ -27,7 +27,7 @@ const MARK_PX: f64 = 4.0;
 
 /// What a form on the sheet is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CellKind {
+pub(crate) enum CellKind {
     /// An example.
     Example,
     /// A blend that was placed here.
@@ -43,7 +43,7 @@ impl CellKind {
 
     /// What a form of this kind is made of.
     #[must_use]
-    pub fn look(self) -> Look {
+    pub(crate) fn look(self) -> Look {
         let (colour, surface) = match self {
             Self::Example => ([170, 92, 64], Surface::Even),
             Self::PseudoExample => ([194, 130, 100], Surface::Grainy),
@@ -84,7 +84,7 @@ impl CellKind {
 
 /// A side of the sheet.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SheetAxis {
+pub(crate) struct SheetAxis {
     /// The adjective.
     pub name: String,
     /// Its values, from the left or from the bottom.
@@ -93,7 +93,7 @@ pub struct SheetAxis {
 
 /// One form on the sheet.
 #[derive(Debug, Clone, Copy)]
-pub struct SheetCell<'a> {
+pub(crate) struct SheetCell<'a> {
     /// The form.
     pub form: ShadedForm<'a>,
     /// What it is.
@@ -104,7 +104,7 @@ pub struct SheetCell<'a> {
 
 /// The whole sheet.
 #[derive(Debug, Clone)]
-pub struct Sheet<'a> {
+pub(crate) struct Sheet<'a> {
     /// What it is of.
     pub title: &'a str,
     /// What holds for all forms.
@@ -128,7 +128,7 @@ impl Sheet<'_> {
     ///
     /// # Errors
     /// [`PictureError`] if there is not one form for each pair of values, or no picture is large enough.
-    pub fn draw(&self) -> Result<Frame, PictureError> {
+    pub(crate) fn draw(&self) -> Result<Frame, PictureError> {
         let columns = self.across.values.len();
         let rows = self.up.as_ref().map_or(1, |up| up.values.len());
         if columns == 0 || rows == 0 || self.cells.len() != columns * rows {
