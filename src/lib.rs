@@ -81,10 +81,12 @@ pub mod texture;
 
 pub mod render;
 
+#[cfg(feature = "shape3d")]
 pub mod shape3d;
 
 pub mod animation;
 
+#[cfg(feature = "export")]
 pub mod export;
 
 pub mod interop;
@@ -92,18 +94,25 @@ pub mod interop;
 // What wires them together, and what stands above it.
 pub mod pipeline;
 
+#[cfg(feature = "scene")]
 pub mod scene;
 
 // The names that most programs need.
 pub use animation::Animation;
 pub use blend::{BlendOptions, RigidBlend, Stretch};
+#[cfg(feature = "export")]
 pub use export::{GifWriter, WriteError, png_bytes};
-pub use input::{BitmapOptions, Drawing, read_bitmap, read_pixels, read_svg};
+pub use input::Drawing;
+#[cfg(feature = "svg")]
+pub use input::read_svg;
+#[cfg(feature = "images")]
+pub use input::{BitmapOptions, read_bitmap, read_pixels};
 pub use math::Point;
 pub use outline::{Outline, Ring};
 pub use pipeline::{Build, Character, CharacterSpec, LayerSpec, PipelineError, PoseSpec, map_layer};
 pub use pose::{Mapping, PoseSet};
 pub use render::{Frame, VectorFrame};
+#[cfg(feature = "scene")]
 pub use scene::Scene;
 pub use weights::WeightProvider;
 

@@ -68,7 +68,7 @@ impl Default for ReachOptions {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShapePoint {
     /// One a pose.
-    anchors: Vec<MeshPoint>,
+    pub(super) anchors: Vec<MeshPoint>,
 }
 
 impl ShapePoint {
@@ -92,11 +92,6 @@ impl ShapePoint {
         Self {
             anchors: vec![point; poses],
         }
-    }
-
-    /// What it is in each pose.
-    pub(super) fn anchors(&self) -> &[MeshPoint] {
-        &self.anchors
     }
 
     /// The point that is these in the poses.

@@ -24,6 +24,7 @@ mod puppet_texture;
 pub(crate) mod raster;
 mod reached;
 mod sampler;
+#[cfg(feature = "scene")]
 pub(crate) mod shaded;
 mod silhouette;
 mod texture;

@@ -69,7 +69,7 @@ pub fn arrange(distances: &[Vec<f64>]) -> Vec<[f64; 2]> {
 /// It lies no nearer to another than a twentieth of what they span. One more than one lies at distance 1 along the first axis, the
 /// first of all at the origin of the plane.
 #[must_use]
-pub(crate) fn place_among(places: &[Vec<f64>], among: &[Vec<f64>], own: &[f64]) -> Vec<f64> {
+pub fn place_among(places: &[Vec<f64>], among: &[Vec<f64>], own: &[f64]) -> Vec<f64> {
     /// Steps of the majorisation, which converges linearly.
     const STEPS: usize = 300;
     /// Share of the span that poses stay apart.

@@ -27,8 +27,7 @@ mod tessellation;
 mod tests;
 mod walls;
 
-pub use arrangement::arrange;
-pub(crate) use arrangement::place_among;
+pub use arrangement::{arrange, place_among};
 pub use biharmonic::{BiharmonicOptions, BiharmonicWeights, Edit, Energy, Range};
 pub use bounded::BoundedReport;
 pub use objective::{Objective, Region, Target};

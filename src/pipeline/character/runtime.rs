@@ -29,7 +29,7 @@ impl Character {
         let puppet = self.puppet();
         let named = self.names.iter().zip(&self.places);
         let poses = named
-            .zip(self.figure.draw_orders())
+            .zip(&self.figure.draw_orders)
             .map(|((name, at), order)| RuntimePose {
                 name: name.clone(),
                 at: at.clone(),
@@ -38,7 +38,7 @@ impl Character {
         let layers = self.figure.layers.iter().zip(&puppet.layers);
         Ok(RuntimeFile {
             size: puppet.size.map(|side| side as u32),
-            texture_sharpness: self.figure.texture_sharpness(),
+            texture_sharpness: self.figure.texture_sharpness,
             poses: poses.collect(),
             field: self.field()?,
             animation: self.played(animation)?,
@@ -124,10 +124,10 @@ fn runtime_layer<E: Into<Box<dyn Error + Send + Sync>>>(
         mesh: mesh.map_err(|error| PipelineError::stage(&[], None, error))?,
         rings: layer.rings.clone(),
         options: shape.options().clone(),
-        tie: shape.tie_points().map(|(to, own, other)| RuntimeTie {
-            to,
-            own: own.anchors().to_vec(),
-            other: other.anchors().to_vec(),
+        tie: shape.tie.as_ref().map(|tie| RuntimeTie {
+            to: tie.to,
+            own: tie.own.anchors.clone(),
+            other: tie.other.anchors.clone(),
         }),
         textures: layer
             .textures
