@@ -25,8 +25,8 @@ mod simplify;
 mod triangulate;
 
 pub use refine::{Guide, RefineError, RefineOptions, RefineReport, refine, refine_guided};
-pub use simplify::{RingPoint, Simplified, SimplifyError, SimplifyOptions, SimplifyReport, simplify};
-pub(crate) use simplify::{Simplification, SimplifiedAlone};
+pub(crate) use simplify::SimplifiedAlone;
+pub use simplify::{RingPoint, Simplification, Simplified, SimplifyError, SimplifyOptions, SimplifyReport, simplify};
 pub use triangulate::{
     Effort, Feature, FeaturePath, Features, PathEnd, TriangulateError, TriangulateReport, triangulate,
     triangulate_features,

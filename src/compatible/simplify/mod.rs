@@ -225,7 +225,7 @@ pub fn simplify(
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-pub(crate) struct Simplification {
+pub struct Simplification {
     poses: Vec<Arc<PoseAlone>>,
     /// Per ring, all tuples.
     joined: Vec<TupleRing>,
@@ -248,13 +248,13 @@ struct Order {
 
 impl Simplification {
     /// How many variations are worth their time: the first few gain most.
-    pub(crate) const VARIATIONS: usize = 12;
+    pub const VARIATIONS: usize = 12;
 
     /// Simplifies each outline alone and joins their vertices; arguments and errors are those of [`simplify`].
     ///
     /// # Errors
     /// As [`simplify`].
-    pub(crate) fn new(
+    pub fn new(
         outlines: &[Outline],
         correspondences: &[Correspondence],
         landmarks: &[Vec<RingPoint>],
@@ -328,7 +328,7 @@ impl Simplification {
     ///
     /// # Errors
     /// As [`simplify`].
-    pub(crate) fn polygons(&mut self) -> Result<Simplified, SimplifyError> {
+    pub fn polygons(&mut self) -> Result<Simplified, SimplifyError> {
         let (simplified, survivors) = self.collapsed(&self.kept.weights)?;
         self.kept.survivors = survivors;
         Ok(simplified)
@@ -336,7 +336,7 @@ impl Simplification {
 
     /// The polygons by an order that differs from the kept one around a Steiner point of `mesh`, the triangulation of the
     /// kept polygons; another one at every call. `None` if there is no such point, or nothing changes.
-    pub(crate) fn vary(&mut self, mesh: &CompatibleMesh) -> Option<Simplified> {
+    pub fn vary(&mut self, mesh: &CompatibleMesh) -> Option<Simplified> {
         let variation = self.variations;
         self.variations += 1;
         let count = mesh.topology.vertex_count();
@@ -365,7 +365,7 @@ impl Simplification {
     }
 
     /// Keeps the order of the last variation.
-    pub(crate) fn keep(&mut self) {
+    pub fn keep(&mut self) {
         self.kept = self.varied.clone();
     }
 
