@@ -60,6 +60,7 @@ pub struct CharacterSpec {
 
 /// What frames show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum CameraRule {
     /// All poses and the whole animation, as large as they fit.
     #[default]
@@ -87,6 +88,7 @@ pub struct SpaceSpec {
 
 /// Where poses lie in the pose space.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub enum Places {
     /// One place a pose, all of one dimension, no two at the same.
     Given(Vec<Vec<f64>>),
@@ -97,6 +99,7 @@ pub enum Places {
 
 /// Which weights, with the options of their own stage.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum WeightOptions {
     /// Biharmonic on a mesh of the plane (NWM 4.1).
     Biharmonic(BiharmonicOptions),
@@ -191,6 +194,7 @@ pub struct LayerSpec {
 
 /// What a layer is of a character.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum LayerRole {
     /// A layer that the artist made, or the largest of the parts that it fell into.
     #[default]
@@ -201,6 +205,7 @@ pub enum LayerRole {
 
 /// What becomes of holes that not all drawings of a layer have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum UnsharedHoles {
     /// The mesh covers them; in the drawings that have them the texture is open there, and in between it opens and closes.
     #[default]
@@ -221,6 +226,7 @@ pub struct PoseSpec {
 
 /// Where the shape of a pose comes from.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum PoseShape {
     /// A drawing of its own.
     Drawn(DrawnPose),
