@@ -2,7 +2,6 @@
 //!
 //! In one run and on one thread, so that the ratios mean something on any machine:
 //! - `faer solve`: faer's own two triangular solves for x and y on the same matrix, factored by faer as it likes best;
-//! - `own solve`: ours, both right-hand sides interleaved;
 //! - `frame`: everything from weights to vertices, the check for inverted triangles included;
 //! - `triad`: `a = b + s c` over arrays that together hold as many bytes as a frame reads at least once (the factor
 //!   twice, and what the poses say about the triangles): what the memory alone would take.
@@ -21,7 +20,6 @@ use faer::{Conj, Mat, Par, Side};
 use inbetween::blend::{BlendOptions, RigidBlend, Stretch};
 use inbetween::math::Point;
 use inbetween::pose::PoseSet;
-use inbetween::solve::{SparseCholesky, Triplets};
 use strip::poses;
 
 #[path = "common/strip.rs"]
@@ -47,8 +45,8 @@ fn entries(poses: &PoseSet) -> Vec<(usize, usize, f64)> {
     entries
 }
 
-/// Measures faer's solve and ours on one matrix.
-fn solves(group: &mut criterion::BenchmarkGroup<'_, criterion::measurement::WallTime>, poses: &PoseSet) -> usize {
+/// Measures faer's solve.
+fn solves(group: &mut criterion::BenchmarkGroup<'_, criterion::measurement::WallTime>, poses: &PoseSet) {
     let size = poses.topology().vertex_count() - 1;
     let entries = entries(poses);
     let triplets: Vec<_> = entries.iter().map(|&(r, c, value)| Triplet::new(r, c, value)).collect();
@@ -83,21 +81,6 @@ fn solves(group: &mut criterion::BenchmarkGroup<'_, criterion::measurement::Wall
             factored.solve_in_place_with_conj(Conj::No, solution.as_mut(), Par::Seq, MemStack::new(&mut buffer));
         });
     });
-
-    let mut triplets = Triplets::new(size, size);
-    for (row, column, value) in entries {
-        triplets.add(row, column, value);
-    }
-    let own = SparseCholesky::new(&triplets.build()).expect("positive definite");
-    let interleaved: Vec<[f64; 2]> = (0..size).map(|row| [right[(row, 0)], right[(row, 1)]]).collect();
-    let mut solution = interleaved.clone();
-    group.bench_function("own solve", |b| {
-        b.iter(|| {
-            solution.copy_from_slice(&interleaved);
-            own.solve_in_order(&mut solution)
-        });
-    });
-    own.factor_entry_count()
 }
 
 fn frames(criterion: &mut Criterion) {
@@ -111,17 +94,16 @@ fn frames(criterion: &mut Criterion) {
         for count in [4, 16] {
             let poses = poses(columns, rows, count);
             if count == 4 {
-                factor_entries = solves(&mut group, &poses);
+                solves(&mut group, &poses);
             }
             let weights: Vec<f64> = (0..count)
                 .map(|k| 2.0 * (k + 1) as f64 / (count * (count + 1)) as f64)
                 .collect();
             for stretch in [Stretch::Linear, Stretch::Limited, Stretch::Log] {
-                let options = BlendOptions {
-                    stretch,
-                    ..BlendOptions::default()
-                };
+                let mut options = BlendOptions::default();
+                options.stretch = stretch;
                 let blend = RigidBlend::new(&poses, &options).expect("a blend");
+                factor_entries = blend.factor_entry_count();
                 let (mut scratch, mut positions) = (blend.scratch(), Vec::new());
                 group.bench_function(format!("frame, {count} poses, {stretch:?}"), |b| {
                     b.iter(|| blend.blend(black_box(&weights), &mut scratch, &mut positions));

@@ -43,10 +43,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Frames and nothing else.
 fn play(columns: usize, rows: usize, count: usize, frames: usize) -> Result<(), Box<dyn Error>> {
-    let options = BlendOptions {
-        stretch: Stretch::Linear,
-        ..BlendOptions::default()
-    };
+    let mut options = BlendOptions::default();
+    options.stretch = Stretch::Linear;
     let blend = RigidBlend::new(&poses(columns, rows, count), &options)?;
     let weights = vec![1.0 / count as f64; count];
     let (mut scratch, mut positions) = (blend.scratch(), Vec::new());

@@ -205,14 +205,10 @@ fn frames(criterion: &mut Criterion) {
     };
     let four = weights;
     let one = [1.0, 0.0, 0.0, 0.0];
-    let light = PaintOptions {
-        blending: ColourBlend::Linear,
-        ..PaintOptions::default()
-    };
-    let fine = PaintOptions {
-        supersample: 2,
-        ..PaintOptions::default()
-    };
+    let mut light = PaintOptions::default();
+    light.blending = ColourBlend::Linear;
+    let mut fine = PaintOptions::default();
+    fine.supersample = 2;
     for (name, threads, painter, texture_weights) in [
         ("four textures, 1 thread", 1, &plain, four),
         ("four textures, 2 threads", 2, &plain, four),

@@ -60,10 +60,10 @@ fn options(radial: Radial, pseudo: &[Vec<f64>]) -> RbfOptions {
         from: at.iter().map(|x| 0.9 * x).collect(),
         at: at.clone(),
     };
-    RbfOptions {
-        radial,
-        pseudo_poses: pseudo.iter().map(pseudo_pose).collect(),
-    }
+    let mut options = RbfOptions::default();
+    options.radial = radial;
+    options.pseudo_poses = pseudo.iter().map(pseudo_pose).collect();
+    options
 }
 
 fn shape([count, pseudo, dimension, vertices]: [usize; 4]) -> Shape {

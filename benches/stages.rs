@@ -174,7 +174,8 @@ fn mesh_sizes(criterion: &mut Criterion) {
     let polygons: Vec<Outline> = (0..4).map(|pose| wavy(50, pose, 4)).collect();
     let (mesh, _) = triangulate(&polygons, &[]).expect("triangulated");
     for edge_length in [0.08, 0.04, 0.02] {
-        let options = RefineOptions::default().with_edge_length(edge_length);
+        let mut options = RefineOptions::default();
+        options.edge_length = edge_length;
         let (refined, _) = refine(&mesh, &options).expect("refined");
         let vertices = refined.positions[0].len();
         group.bench_function(format!("refine/to {vertices} vertices x 4 poses"), |b| {

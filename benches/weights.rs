@@ -36,10 +36,8 @@ fn biharmonic(criterion: &mut Criterion) {
         (16, Energy::JacobianDifferences),
     ] {
         let places = plane(count);
-        let options = BiharmonicOptions {
-            energy,
-            ..BiharmonicOptions::default()
-        };
+        let mut options = BiharmonicOptions::default();
+        options.energy = energy;
         let built = BiharmonicWeights::new(&places, &options).expect("a layout");
         let name = format!("{energy:?}, {count} poses, {} vertices", built.vertex_count());
         group.bench_function(format!("build/{name}"), |b| {
@@ -78,10 +76,8 @@ fn biharmonic(criterion: &mut Criterion) {
 
 fn bounded(criterion: &mut Criterion) {
     let mut group = brief(criterion, "bounded");
-    let options = BiharmonicOptions {
-        range: Range::Unit,
-        ..BiharmonicOptions::default()
-    };
+    let mut options = BiharmonicOptions::default();
+    options.range = Range::Unit;
     let places = plane(4);
     let built = BiharmonicWeights::new(&places, &options).expect("a layout");
     let name = format!("4 poses, {} vertices", built.vertex_count());
@@ -108,10 +104,8 @@ fn radial(criterion: &mut Criterion) {
         .collect();
     let queries: Vec<f64> = (0..PLACES * DIMENSION).map(|k| (0.37 * k as f64).sin()).collect();
     for radial in [Radial::BSpline, Radial::ThinPlate] {
-        let options = RbfOptions {
-            radial,
-            ..RbfOptions::default()
-        };
+        let mut options = RbfOptions::default();
+        options.radial = radial;
         let mut provider = RbfWeights::new(&places, &options).expect("a layout");
         let mut weights = Vec::new();
         group.throughput(Throughput::Elements(PLACES as u64));

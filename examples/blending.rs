@@ -232,11 +232,9 @@ impl Cast {
     }
 
     fn blend(&self, stretch: Stretch) -> Result<RigidBlend, Box<dyn Error>> {
-        let options = BlendOptions {
-            stretch,
-            turns: self.scene.poses.iter().map(|pose| pose.turns).collect(),
-            ..BlendOptions::default()
-        };
+        let mut options = BlendOptions::default();
+        options.stretch = stretch;
+        options.turns = self.scene.poses.iter().map(|pose| pose.turns).collect();
         Ok(RigidBlend::new(&self.mapping.poses, &options)?)
     }
 

@@ -15,8 +15,8 @@ use std::path::PathBuf;
 
 use inbetween::export::png_bytes;
 use inbetween::math::Point;
-use inbetween::solve::{DenseMatrix, SolvedDense};
 use inbetween::weights::{RbfOptions, RbfWeights, WeightProvider};
+use nalgebra::{Matrix3, Vector3};
 use tiny_skia::Color;
 
 use common::{Sheet, outline_of};
@@ -84,20 +84,21 @@ struct Parts {
 
 impl Parts {
     fn of_the_first() -> Result<Self, Box<dyn Error>> {
-        let wanted = |example: usize| f64::from(u8::from(example == 0));
-        let homogeneous = DenseMatrix::from_fn(3, 2, |row, column| if column == 0 { PLACES[row] } else { 1.0 });
-        let line = homogeneous.least_squares(&DenseMatrix::from_fn(3, 1, |row, _| wanted(row)), 1e-10)?;
+        let (places, wanted) = (Vector3::from(PLACES), Vector3::new(1.0, 0.0, 0.0));
+        // The least squares of a line go through both means.
+        let deviations = places.add_scalar(-places.mean());
+        let slope = deviations.dot(&wanted) / deviations.norm_squared();
         let mut parts = Self {
-            slope: line.at(0, 0),
-            at_zero: line.at(1, 0),
+            slope,
+            at_zero: wanted.mean() - slope * places.mean(),
             // The distance to the nearest other example.
             radii: [0.15, 0.15, 0.45],
             coefficients: [1.0; 3],
         };
-        let system = DenseMatrix::from_fn(3, 3, |row, column| parts.spline(column, PLACES[row]));
-        let left_over = DenseMatrix::from_fn(3, 1, |row, _| wanted(row) - parts.line(PLACES[row]));
-        let solution = SolvedDense::new(&system)?.solve(&left_over)?;
-        parts.coefficients = std::array::from_fn(|k| solution.at(k, 0));
+        let system = Matrix3::from_fn(|row, column| parts.spline(column, PLACES[row]));
+        let left_over = wanted - places.map(|x| parts.line(x));
+        let solution = system.lu().solve(&left_over).ok_or("the splines are not independent")?;
+        parts.coefficients = solution.into();
         Ok(parts)
     }
 

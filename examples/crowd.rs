@@ -4,10 +4,7 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use inbetween::math::Point;
-use inbetween::pipeline::Build;
-use inbetween::scene::Scene;
-use inbetween::weights::WeightProvider as _;
+use inbetween::{Build, Point, Scene, WeightProvider as _};
 
 const CHARACTERS: usize = 100;
 

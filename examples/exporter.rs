@@ -4,8 +4,7 @@
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use inbetween::render::Frame;
-use inbetween::scene::Scene;
+use inbetween::{Frame, Scene};
 
 /// Writes frames to anything that takes bytes: a file, a socket, a process, a buffer in memory.
 struct PamWriter<W: Write>(W);

@@ -2,10 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use inbetween::math::Point;
-use inbetween::pipeline::map_layer;
 use inbetween::pose::HandleDeformation;
-use inbetween::scene::Scene;
+use inbetween::{Point, Scene, map_layer};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).ok_or("usage: handles FOLDER")?);

@@ -44,10 +44,8 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let rings: Vec<Ring> = outlines.iter().map(|outline| outline.outer().clone()).collect();
     let curves: Vec<ArcLength> = rings.iter().map(ArcLength::new).collect();
     let (landmarks, inside) = landmarks(&scene, &curves, &outlines);
-    let options = MatchOptions {
-        reference: scene.reference,
-        ..MatchOptions::default()
-    };
+    let mut options = MatchOptions::default();
+    options.reference = scene.reference;
     let matched = match_rings(&rings, &landmarks, &options)?;
     save(
         draw_matching(&curves, &matched.correspondence, matched.reference)?,

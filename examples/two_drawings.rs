@@ -1,9 +1,10 @@
 //! Two drawings in memory become an animated GIF in memory: no file is read, no scene is written.
 
-use inbetween::animation::Animation;
-use inbetween::export::{Backdrop, GifWriter, Palette, Repetition};
-use inbetween::input::{BitmapOptions, Drawing, InputError, read_pixels};
-use inbetween::pipeline::{Character, CharacterSpec, LayerSpec, PoseSpec};
+use inbetween::export::{Backdrop, Palette, Repetition};
+use inbetween::input::InputError;
+use inbetween::{
+    Animation, BitmapOptions, Character, CharacterSpec, Drawing, GifWriter, LayerSpec, PoseSpec, read_pixels,
+};
 
 /// Columns and rows of drawings and frames.
 const SIZE: [usize; 2] = [128, 128];

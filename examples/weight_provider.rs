@@ -3,9 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use inbetween::export::png_bytes;
-use inbetween::scene::Scene;
-use inbetween::weights::{RbfOptions, RbfWeights, WeightError, WeightProvider};
+use inbetween::weights::{RbfOptions, RbfWeights, WeightError};
+use inbetween::{Scene, WeightProvider, png_bytes};
 
 /// What is negative becomes 0, and the rest is scaled to sum 1: still 1 at a pose's own place and 0 at the others.
 #[derive(Debug)]

@@ -12,23 +12,23 @@
 //!
 //! | stage | from | to |
 //! |---|---|---|
-//! | [`input`] | a file's bytes | [`Drawing`](input::Drawing): outline and pixels |
+//! | [`input`] | a file's bytes | [`Drawing`]: outline and pixels |
 //! | [`matching`] | N outlines | [`Correspondence`](matching::Correspondence) |
 //! | [`compatible`] | N outlines in correspondence | [`CompatibleMesh`](compatible::CompatibleMesh) |
-//! | [`pose`] | all of these | [`Mapping`](pose::Mapping): one topology, N embeddings |
+//! | [`pose`] | all of these | [`Mapping`]: one topology, N embeddings |
 //! | [`weights`] | a place of the pose space | N weights that sum to 1 |
 //! | [`blend`] | N weights | the vertices of one mesh |
 //! | [`texture`] | N weights | how much of each drawing is seen |
-//! | [`render`] | vertices and weights | [`Frame`](render::Frame) |
+//! | [`render`] | vertices and weights | [`Frame`] |
 //! | [`export`] | frames | PNG, GIF, video, SVG, Lottie, glTF, … |
 //! | [`shape3d`] | forms in space and a place among them | a form in space |
 //!
-//! [`pipeline`] wires them together: a [`CharacterSpec`](pipeline::CharacterSpec), a plain value that holds drawings and options, becomes a
-//! [`Character`](pipeline::Character), built once and asked for frames from any thread. The example `two_drawings` makes one of pixels in
-//! memory. [`scene`] reads `scene.toml` and makes one of it:
+//! [`pipeline`] wires them together: a [`CharacterSpec`], a plain value that holds drawings and options, becomes a
+//! [`Character`], built once and asked for frames from any thread. The example `two_drawings` makes one of pixels in
+//! memory. [`scene`] reads `scene.toml` and makes one of it. The names that most programs need are those of the root, too:
 //!
 //! ```
-//! use inbetween::scene::Scene;
+//! use inbetween::Scene;
 //! use std::path::Path;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -61,7 +61,7 @@ pub mod mesh;
 // Stages, as data flows.
 pub mod input;
 
-pub mod parts;
+mod parts;
 
 pub mod appearance;
 
@@ -81,10 +81,12 @@ pub mod texture;
 
 pub mod render;
 
+#[cfg(feature = "shape3d")]
 pub mod shape3d;
 
 pub mod animation;
 
+#[cfg(feature = "export")]
 pub mod export;
 
 pub mod interop;
@@ -92,7 +94,27 @@ pub mod interop;
 // What wires them together, and what stands above it.
 pub mod pipeline;
 
+#[cfg(feature = "scene")]
 pub mod scene;
+
+// The names that most programs need.
+pub use animation::Animation;
+pub use blend::{BlendOptions, RigidBlend, Stretch};
+#[cfg(feature = "export")]
+pub use export::{GifWriter, WriteError, png_bytes};
+pub use input::Drawing;
+#[cfg(feature = "svg")]
+pub use input::read_svg;
+#[cfg(feature = "images")]
+pub use input::{BitmapOptions, read_bitmap, read_pixels};
+pub use math::Point;
+pub use outline::{Outline, Ring};
+pub use pipeline::{Build, Character, CharacterSpec, LayerSpec, PipelineError, PoseSpec, map_layer};
+pub use pose::{Mapping, PoseSet};
+pub use render::{Frame, VectorFrame};
+#[cfg(feature = "scene")]
+pub use scene::Scene;
+pub use weights::WeightProvider;
 
 /// The README's example compiles.
 #[cfg(doctest)]

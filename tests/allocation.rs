@@ -46,11 +46,9 @@ fn a_frame_allocates_nothing() {
     });
     for stretch in [Stretch::Linear, Stretch::Limited, Stretch::Log] {
         for anchor in [Anchor::Centroid, Anchor::Point(3), Anchor::Soft(soft.to_vec())] {
-            let options = BlendOptions {
-                stretch,
-                anchor,
-                ..BlendOptions::default()
-            };
+            let mut options = BlendOptions::default();
+            options.stretch = stretch;
+            options.anchor = anchor;
             let blend = RigidBlend::new(&poses, &options).expect("a blend");
             let mut scratch = blend.scratch();
             let mut positions = Vec::with_capacity(blend.vertex_count());
@@ -85,10 +83,8 @@ fn weights_and_blends_of_forms_allocate_nothing() {
         from: vec![1.5, 2.0],
         at: vec![1.5, 3.0],
     };
-    let options = RbfOptions {
-        pseudo_poses: vec![pseudo],
-        ..RbfOptions::default()
-    };
+    let mut options = RbfOptions::default();
+    options.pseudo_poses = vec![pseudo];
     let shape = Shape::new(topology.clone(), (0..6).map(example).collect(), &options).expect("a shape");
     let textures: Vec<Frame> = (0..6).map(|k| Frame::filled(19, 5, [k, 2 * k, 255 - k, 200])).collect();
     let images = ImageBlend::new(&textures, ColourBlend::Linear).expect("one size");

@@ -175,10 +175,9 @@ fn sphere() -> Result<Sphere, Box<dyn Error>> {
         }
     }
     // Step by step, each on the sphere, so that triangles stay even.
-    let once = SubdivisionOptions {
-        steps: 1,
-        positions: SubdividedPositions::Refined,
-    };
+    let mut once = SubdivisionOptions::default();
+    once.steps = 1;
+    once.positions = SubdividedPositions::Refined;
     for _ in 0..3 {
         let finer = LoopSubdivision::new(corners.len(), &triangles, &once)?;
         corners = finer.positions(&corners)?.iter().map(|at| at.normalize()).collect();

@@ -11,9 +11,9 @@ use crate::math::point::bounding_box;
 use crate::outline::Outline;
 
 /// The side of the square with the figure's area, in figure units: that of a person or an animal whose diagonal is one.
-pub const SIDE_PER_UNIT: f64 = 0.41;
+pub(crate) const SIDE_PER_UNIT: f64 = 0.41;
 /// Working pixels that span a figure unit: an eye of a hundredth is six pixels wide, and a figure costs about 60,000 pixels.
-pub const PIXELS_PER_UNIT: f64 = 600.0;
+pub(crate) const PIXELS_PER_UNIT: f64 = 600.0;
 /// Working pixels around the figure: what a comparison sees of the outside.
 const MARGIN: f64 = 24.0;
 /// Working pixels that a drawing has at most. Lines of a width that is nothing beside their length have fewer a unit.

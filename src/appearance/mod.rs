@@ -7,8 +7,8 @@
 //!
 //! | term | meaning |
 //! |---|---|
-//! | figure unit | the side of the square with the figure's area, divided by [`SIDE_PER_UNIT`]: about the diagonal of a compact figure. It measures thin figures by their width, too, which the diagonal does not |
-//! | working pixel | [`PIXELS_PER_UNIT`] of them span a figure unit |
+//! | figure unit | the side of the square with the figure's area, divided by 0.41 (`SIDE_PER_UNIT`): about the diagonal of a compact figure. It measures thin figures by their width, too, which the diagonal does not |
+//! | working pixel | 600 of them (`PIXELS_PER_UNIT`) span a figure unit |
 //! | ink | how much darker a place is than the closing (dilation, then erosion) of the lightness around it |
 //!
 //! Cost: linear in the working pixels, whose number does not depend on the resolution of the drawing.
@@ -23,5 +23,7 @@ mod profile;
 pub use blur::ChannelImage;
 pub(crate) use blur::{CHANNELS, Pixel};
 pub(crate) use bytes::{ByteImage, Bytes, STEPS_PER_UNIT};
-pub use figure::{Appearance, PIXELS_PER_UNIT, SIDE_PER_UNIT};
-pub use profile::{PROFILE_CHANNELS, Profile};
+pub use figure::Appearance;
+pub(crate) use figure::PIXELS_PER_UNIT;
+pub(crate) use profile::PROFILE_CHANNELS;
+pub use profile::Profile;

@@ -9,7 +9,7 @@ const DEPTHS: [f64; 3] = [0.015, 0.035, 0.06];
 /// Channels that are compared: all but coverage, which the curve itself says.
 const CHANNELS: usize = 4;
 /// Numbers a sample.
-pub const PROFILE_CHANNELS: usize = DEPTHS.len() * CHANNELS;
+pub(crate) const PROFILE_CHANNELS: usize = DEPTHS.len() * CHANNELS;
 /// Blur of what is looked at, in working pixels.
 const DEVIATION_PX: f32 = 3.0;
 /// Half of the chord that gives the direction of the curve, in working pixels.

@@ -17,7 +17,7 @@ const GAP_TOLERANCE_RAD: f64 = 1e-6;
 
 /// Whole turns to add to each pose.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Branch {
+pub(super) struct Branch {
     /// Turns by pose.
     pub turns: Vec<f64>,
     /// Whether another choice was equally good.
@@ -26,7 +26,7 @@ pub struct Branch {
 
 /// The branch on which every mean angle is nearest to zero.
 #[must_use]
-pub fn nearest_zero(means_rad: &[f64]) -> Branch {
+pub(super) fn nearest_zero(means_rad: &[f64]) -> Branch {
     let turns: Vec<f64> = means_rad.iter().map(|mean| -(mean / TAU).round_ties_even()).collect();
     let half_turn =
         |(mean, turns): (&f64, &f64)| ((mean + TAU * turns).abs() - std::f64::consts::PI).abs() < GAP_TOLERANCE_RAD;
@@ -38,7 +38,7 @@ pub fn nearest_zero(means_rad: &[f64]) -> Branch {
 
 /// The branch on which the mean angles span the least: the circle cut at its largest gap.
 #[must_use]
-pub fn largest_gap(means_rad: &[f64]) -> Branch {
+pub(super) fn largest_gap(means_rad: &[f64]) -> Branch {
     let count = means_rad.len();
     let place_rad: Vec<f64> = means_rad.iter().map(|mean| mean.rem_euclid(TAU)).collect();
     let mut order: Vec<usize> = (0..count).collect();

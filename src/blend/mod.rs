@@ -3,9 +3,9 @@
 //! Source: Baxter, Barla, Anjyo, "N-way morphing for 2D animation", section 4.2, after Alexa, Cohen-Or, Levin 2000.
 //!
 //! 1. Every triangle of every pose is mapped from a reference triangle by a matrix `A`, split into a rotation and a
-//!    symmetric stretch: `A = R(alpha) S` ([`crate::math::PolarSplit`]).
-//! 2. The angles are made consistent over the mesh and over the poses ([`rotation`], [`branch`]).
-//! 3. For weights `w` the targets are `A(w) = R(sum w_i alpha_i) S(w)` ([`stretch`]).
+//!    symmetric stretch: `A = R(alpha) S` (`math::PolarSplit`).
+//! 2. The angles are made consistent over the mesh and over the poses (`rotation.rs`, `branch.rs`).
+//! 3. For weights `w` the targets are `A(w) = R(sum w_i alpha_i) S(w)` (`stretch.rs`).
 //! 4. Vertices minimise `sum area |J(V) - A(w)|^2`: one sparse factorisation, two triangular solves a frame for x and
 //!    y together ([`RigidBlend`]).
 //! 5. An anchor fixes the translation; several soft ones are terms of the same energy.
@@ -15,7 +15,7 @@
 //! - Its last formula writes `R(alpha_{tau,i}(w))`; the subscript `i` is a misprint, the angle is the blended one.
 //! - The sum over triangles is weighted by area, so that the result converges as the mesh is refined.
 //! - By default no pose is the base: each triangle has a reference of its own, the mean of its metric over the poses
-//!   ([`mod@reference`]), and the result depends neither on a base nor on the order of the poses. The references do not
+//!   (`reference.rs`), and the result depends neither on a base nor on the order of the poses. The references do not
 //!   fit together in the plane and need not: the energy only needs each triangle's shape.
 //! - Stretches can be blended through their logarithms, which stays positive for all weights.
 //! - Parts can be stiffer than others, or limited in how far they stretch ([`Region`]).
@@ -30,15 +30,15 @@
 //! deformations by handles. `data/pictures` has them.
 
 mod anchor;
-pub mod branch;
+mod branch;
 mod crowd;
 mod guard;
 mod maps;
-pub mod reference;
+mod reference;
 mod region;
 mod rigid;
-pub mod rotation;
-pub mod stretch;
+mod rotation;
+mod stretch;
 mod system;
 mod targets;
 
@@ -139,6 +139,7 @@ pub struct Region {
 
 /// What [`RigidBlend`] can be told.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct BlendOptions {
     /// Default: [`Reference::Canonical`].
     pub reference: Reference,

@@ -17,7 +17,7 @@ use crate::pose::PoseSet;
 ///
 /// # Errors
 /// [`BlendError::NotPositive`] or [`BlendError::NoSuchPose`].
-pub fn reference_edges(poses: &PoseSet, reference: Reference) -> Result<Vec<Matrix>, BlendError> {
+pub(super) fn reference_edges(poses: &PoseSet, reference: Reference) -> Result<Vec<Matrix>, BlendError> {
     let edges = match reference {
         Reference::Pose(pose) => {
             let positions = poses.positions().get(pose).ok_or(BlendError::NoSuchPose {

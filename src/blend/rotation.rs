@@ -31,7 +31,7 @@ const CLEAR_RAD: f64 = 3.0;
 ///
 /// # Errors
 /// [`BlendError::NotPositive`] for a triangle without area, [`BlendError::NotClosed`] if no consistent angles exist.
-pub fn pose_to_pose(poses: &PoseSet, from: usize, to: usize) -> Result<Vec<f64>, BlendError> {
+pub(super) fn pose_to_pose(poses: &PoseSet, from: usize, to: usize) -> Result<Vec<f64>, BlendError> {
     let (start, end) = (&poses.positions()[from], &poses.positions()[to]);
     let mut angles_rad = Vec::with_capacity(poses.topology().triangles().len());
     for (triangle, (edges, image)) in pose_edges(poses, start).iter().zip(pose_edges(poses, end)).enumerate() {
@@ -95,7 +95,7 @@ pub fn pose_to_pose(poses: &PoseSet, from: usize, to: usize) -> Result<Vec<f64>,
 /// angle from there to pose `i`, consistent over the mesh. The two ways differ by less than a quarter turn:
 /// `R_i S_i (R_p S_p)^-1` turns by the angle of `R_i R_p^-1` but for the rotation in the product of two stretches.
 #[must_use]
-pub fn lift(split: &PolarSplit, near_rad: f64) -> f64 {
+pub(super) fn lift(split: &PolarSplit, near_rad: f64) -> f64 {
     angle::nearest_turn(split.angle_rad, near_rad)
 }
 

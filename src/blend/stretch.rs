@@ -3,18 +3,18 @@
 use crate::math::Matrix;
 
 /// A symmetric 2 x 2 matrix: entries (1,1), (1,2), (2,2).
-pub type Symmetric = [f64; 3];
+pub(super) type Symmetric = [f64; 3];
 
 /// The three entries of a symmetric matrix.
 #[must_use]
-pub fn entries(matrix: &Matrix) -> Symmetric {
+pub(super) fn entries(matrix: &Matrix) -> Symmetric {
     [matrix.m11, 0.5 * (matrix.m12 + matrix.m21), matrix.m22]
 }
 
 /// The logarithm of a positive definite matrix whose determinant is known; the determinant is taken as given because
 /// for needles the entries no longer hold it.
 #[must_use]
-pub fn logarithm([a, b, c]: Symmetric, determinant: f64) -> Symmetric {
+pub(super) fn logarithm([a, b, c]: Symmetric, determinant: f64) -> Symmetric {
     let (mean, half, radius) = mean_and_radius([a, b, c]);
     let larger = mean + radius;
     // ln(larger) - ln(smaller), with smaller = determinant / larger.
@@ -31,7 +31,7 @@ pub fn logarithm([a, b, c]: Symmetric, determinant: f64) -> Symmetric {
 
 /// The exponential of a symmetric matrix: always positive definite.
 #[must_use]
-pub fn exponential([a, b, c]: Symmetric) -> Symmetric {
+pub(super) fn exponential([a, b, c]: Symmetric) -> Symmetric {
     let (mean, half, radius) = mean_and_radius([a, b, c]);
     let scale = libm::exp(mean);
     // sinh(r) / r is 1 at 0.
@@ -45,21 +45,21 @@ pub fn exponential([a, b, c]: Symmetric) -> Symmetric {
 
 /// Between what and what the eigenvalues of a stretch have to stay.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StretchRange {
+pub(super) struct StretchRange {
     smallest: f64,
     largest: f64,
 }
 
 impl StretchRange {
     /// No limit.
-    pub const ALL: Self = Self {
+    pub(super) const ALL: Self = Self {
         smallest: f64::NEG_INFINITY,
         largest: f64::INFINITY,
     };
 
     /// The eigenvalues of `stretches`, widened by the factor `limit` on both sides.
     #[must_use]
-    pub fn around(stretches: impl Iterator<Item = Symmetric>, limit: f64) -> Self {
+    pub(super) fn around(stretches: impl Iterator<Item = Symmetric>, limit: f64) -> Self {
         // Without a limit even eigenvalues that are not positive are left alone.
         if limit.is_infinite() {
             return Self::ALL;
@@ -80,7 +80,7 @@ impl StretchRange {
 
     /// The matrix with the same directions and its eigenvalues within the range. Continuous in the entries.
     #[must_use]
-    pub fn clamp(self, entries: Symmetric) -> Symmetric {
+    pub(super) fn clamp(self, entries: Symmetric) -> Symmetric {
         let (mean, half, radius) = mean_and_radius(entries);
         let larger = (mean + radius).max(self.smallest).min(self.largest);
         let smaller = (mean - radius).max(self.smallest).min(self.largest);

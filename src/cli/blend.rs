@@ -60,14 +60,12 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     };
     let stretch = Stretch::named(&arguments.stretch).unwrap_or_default();
     let output = Output::open(&arguments.output)?;
-    let options = BlendOptions {
-        reference,
-        stretch,
-        guard: match arguments.frame_guard.as_str() {
-            "repair" => FrameGuard::Repair,
-            _ => FrameGuard::Off,
-        },
-        ..BlendOptions::default()
+    let mut options = BlendOptions::default();
+    options.reference = reference;
+    options.stretch = stretch;
+    options.guard = match arguments.frame_guard.as_str() {
+        "repair" => FrameGuard::Repair,
+        _ => FrameGuard::Off,
     };
     let blend = RigidBlend::new(&poses, &options).with_context(in_file)?;
     let mut vertices = Vec::new();

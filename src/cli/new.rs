@@ -233,10 +233,8 @@ fn pictures_of(path: &Path, cells: Option<Grid>, notes: &mut Vec<String>) -> any
     let (mut found, mut seen): (Vec<PictureChoice>, Vec<Picture>) = (Vec::new(), Vec::new());
     let (mut empty, mut repeated) = (0, 0);
     for &picture in &choices {
-        let options = BitmapOptions {
-            picture,
-            ..BitmapOptions::default()
-        };
+        let mut options = BitmapOptions::default();
+        options.picture = picture;
         match read_bitmap(&bytes, &options) {
             Err(InputError::NothingDrawn { .. }) => empty += 1,
             Ok(drawing) if seen.contains(&drawing.picture) => repeated += 1,

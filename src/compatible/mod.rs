@@ -11,7 +11,9 @@
 //! };
 //! let (bare, _) = triangulate(&[rectangle(1.0)?, rectangle(2.0)?], &[])?;
 //! assert_eq!(bare.topology.triangles().len(), 2);
-//! let (mesh, report) = refine(&bare, &RefineOptions::default().with_edge_length(0.1))?;
+//! let mut options = RefineOptions::default();
+//! options.edge_length = 0.1;
+//! let (mesh, report) = refine(&bare, &options)?;
 //! assert_eq!(mesh.topology.vertex_count(), 4 + report.splits);
 //! assert!(report.low_angle_deg > 12.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -23,9 +25,8 @@ mod simplify;
 mod triangulate;
 
 pub use refine::{Guide, RefineError, RefineOptions, RefineReport, refine, refine_guided};
-pub use simplify::{
-    RingPoint, Simplification, Simplified, SimplifiedAlone, SimplifyError, SimplifyOptions, SimplifyReport, simplify,
-};
+pub(crate) use simplify::SimplifiedAlone;
+pub use simplify::{RingPoint, Simplification, Simplified, SimplifyError, SimplifyOptions, SimplifyReport, simplify};
 pub use triangulate::{
     Effort, Feature, FeaturePath, Features, PathEnd, TriangulateError, TriangulateReport, triangulate,
     triangulate_features,

@@ -81,11 +81,10 @@ impl<'a> Asked<'a> {
             None => &mut scene,
         };
         if let Some(PoseSource::Drawn(source)) = own.poses.get_mut(self.pose).map(|pose| &mut pose.source) {
-            source.parts = PartOptions {
-                rule: source.parts.rule,
-                keep,
-                ..PartOptions::default()
-            };
+            let mut parts = PartOptions::default();
+            parts.rule = source.parts.rule;
+            parts.keep = keep;
+            source.parts = parts;
         }
         scene.read_drawing(self.layer, self.pose).map(|drawn| drawn.drawing)
     }

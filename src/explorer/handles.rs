@@ -72,10 +72,9 @@ pub(super) fn deform(body: &[u8], session: &Session) -> Result<Response, Refusal
             }
         }
     };
-    dragger.deformation = dragger.deformation.with_options(DragOptions {
-        most_iterations: asked.steps.unwrap_or(STEPS).clamp(1, MOST_STEPS),
-        ..DragOptions::default()
-    });
+    let mut options = DragOptions::default();
+    options.most_iterations = asked.steps.unwrap_or(STEPS).clamp(1, MOST_STEPS);
+    dragger.deformation = dragger.deformation.with_options(options);
     let mut positions = Vec::new();
     let dragged = dragger.deformation.drag(&targets, &mut dragger.scratch, &mut positions);
     *kept = Some(dragger);
@@ -158,10 +157,8 @@ pub(super) fn reach_place(body: &[u8], session: &Session) -> Result<Response, Re
     let found = match asked.search {
         Search::Everywhere => reach(&of_layer, blend, &places, &points, &targets, &ReachOptions::default()),
         Search::Near => {
-            let options = ReachOptions {
-                steps: REACH_STEPS,
-                ..ReachOptions::default()
-            };
+            let mut options = ReachOptions::default();
+            options.steps = REACH_STEPS;
             reach_near(&of_layer, blend, &places, &points, &targets, &options, start)
         }
     }?;

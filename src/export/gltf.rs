@@ -18,6 +18,7 @@
 
 use serde_json::{Value, json};
 
+use super::MotionError;
 use super::gltf_buffer::{GltfBuffer, LINEAR, LINEAR_MIPMAP_LINEAR, NEAREST, container, push, without_empty_lists};
 use super::puppet_motion::{LayerMotion, PuppetMotion, PuppetReport, changes, texture_png};
 use crate::math::Point;
@@ -35,8 +36,8 @@ const CLAMP_TO_EDGE: u32 = 33071;
 /// The bytes of a `.glb` file.
 ///
 /// # Errors
-/// What is wrong with the motion, see [`PuppetMotion::check`]; a file beyond 4 GB.
-pub fn gltf_bytes(motion: &PuppetMotion<'_>) -> Result<(Vec<u8>, PuppetReport), String> {
+/// [`MotionError`] if the motion does not fit together, see [`PuppetMotion::check`], or the file would be larger than 4 GB.
+pub fn gltf_bytes(motion: &PuppetMotion<'_>) -> Result<(Vec<u8>, PuppetReport), MotionError> {
     motion.check()?;
     let mut file = File::default();
     let mut report = PuppetReport {
@@ -68,7 +69,12 @@ struct File {
 
 impl File {
     /// Adds a node with one child a texture; its index.
-    fn add_layer(&mut self, motion: &PuppetMotion<'_>, index: usize, shapes: &LayerMotion) -> Result<usize, String> {
+    fn add_layer(
+        &mut self,
+        motion: &PuppetMotion<'_>,
+        index: usize,
+        shapes: &LayerMotion,
+    ) -> Result<usize, MotionError> {
         let layer = &motion.puppet.layers[index];
         let heaviest: Vec<Option<usize>> = (0..motion.frames.len())
             .map(|frame| motion.heaviest(index, frame))
@@ -185,8 +191,8 @@ impl File {
         self.buffer.add_indices(&indices)
     }
 
-    fn add_material(&mut self, layer: &str, texture: &PuppetTexture) -> Result<usize, String> {
-        let png = texture_png(texture).map_err(|error| error.to_string())?;
+    fn add_material(&mut self, layer: &str, texture: &PuppetTexture) -> Result<usize, MotionError> {
+        let png = texture_png(texture)?;
         let view = self.buffer.add_view(&png, None);
         let name = format!("{layer} {}", texture.name);
         self.images
@@ -210,7 +216,7 @@ impl File {
         motion: &PuppetMotion<'_>,
         layer_nodes: &[usize],
         report: &PuppetReport,
-    ) -> Result<Vec<u8>, String> {
+    ) -> Result<Vec<u8>, MotionError> {
         let root = push(&mut self.nodes, json!({ "name": motion.name, "children": layer_nodes }));
         let place = [0.0, 0.0, CAMERA_DISTANCE];
         let camera = push(

@@ -3,11 +3,15 @@
 //! Numbers in, accessors out: each list of numbers is a view of its own in one buffer, at an address that is a multiple of four.
 //! What refers to them (meshes, skins, animations) belongs to those who write them.
 
+#[cfg(feature = "shape3d")]
+mod joints;
+
 use serde_json::{Value, json};
+
+use super::MotionError;
 
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
-const UNSIGNED_BYTE: u32 = 5121;
 const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
@@ -46,23 +50,6 @@ impl GltfBuffer {
     /// Anything else that vertices have.
     pub(super) fn add_attribute<const WIDTH: usize>(&mut self, values: &[[f32; WIDTH]]) -> usize {
         self.add_floats(values, Some(ARRAY_BUFFER))
-    }
-
-    /// Four joints a vertex.
-    pub(super) fn add_joints(&mut self, joints: &[[u16; 4]]) -> usize {
-        let small = joints.as_flattened().iter().all(|&joint| joint <= u16::from(u8::MAX));
-        let (kind, bytes): (u32, Vec<u8>) = if small {
-            (
-                UNSIGNED_BYTE,
-                joints.as_flattened().iter().map(|&joint| joint as u8).collect(),
-            )
-        } else {
-            let bytes = joints.as_flattened().iter().flat_map(|joint| joint.to_le_bytes());
-            (UNSIGNED_SHORT, bytes.collect())
-        };
-        let view = self.add_view(&bytes, Some(ARRAY_BUFFER));
-        let accessor = json!({ "bufferView": view, "componentType": kind, "count": joints.len(), "type": "VEC4" });
-        push(&mut self.accessors, accessor)
     }
 
     /// Corners of triangles, in as few bytes as they take.
@@ -143,13 +130,12 @@ pub(super) fn without_empty_lists(document: &mut Value) {
 }
 
 /// Header, JSON chunk, binary chunk.
-pub(super) fn container(document: &Value, mut binary: Vec<u8>) -> Result<Vec<u8>, String> {
+pub(super) fn container(document: &Value, mut binary: Vec<u8>) -> Result<Vec<u8>, MotionError> {
     let mut text = document.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     binary.resize(binary.len().next_multiple_of(4), 0);
     let total = 12 + 8 + text.len() + 8 + binary.len();
-    let total =
-        u32::try_from(total).map_err(|_| "the file would be larger than the format allows (4 GB)".to_owned())?;
+    let total = u32::try_from(total).map_err(|_| MotionError::TooLarge { bytes: total })?;
     let mut bytes = Vec::with_capacity(total as usize);
     bytes.extend(b"glTF");
     bytes.extend(2u32.to_le_bytes());

@@ -17,6 +17,8 @@ mod gltf_buffer;
 mod keyed;
 mod keys;
 mod lottie;
+mod motion_error;
+#[cfg(feature = "shape3d")]
 mod obj;
 mod palette;
 mod pending;
@@ -24,7 +26,9 @@ mod png;
 mod puppet_motion;
 pub mod runtime;
 mod sequence;
+#[cfg(feature = "shape3d")]
 mod shape_gltf;
+#[cfg(feature = "shape3d")]
 mod shape_keys;
 mod smil;
 mod spine;
@@ -40,15 +44,19 @@ pub use error::{ExportError, WriteError};
 pub use ffmpeg::{VideoKind, VideoWriter};
 pub use gif::{Backdrop, FASTEST_GIF, GifWriter};
 pub use gltf::{LAYER_GAP, PIXELS_A_UNIT, gltf_bytes};
-pub use keyed::{KeyOptions, KeyReport, KeyedError, KeyedVector, SampleTiming};
+pub use keyed::{Approximation, KeyOptions, KeyReport, KeyedError, KeyedVector, SampleTiming};
 pub use keys::{Keys, place_keys};
+pub use motion_error::{LayerFault, MotionError};
+#[cfg(feature = "shape3d")]
 pub use obj::{ObjForm, ObjTexture, mtl_text, obj_text, write_obj};
 pub use palette::{ColourCount, Palette};
 pub use pending::PendingFile;
 pub use png::{Label, png_bytes, png_bytes_with, write_png};
 pub use puppet_motion::{PuppetMotion, PuppetReport, texture_png};
 pub use sequence::{Sequence, SequenceKind};
+#[cfg(feature = "shape3d")]
 pub use shape_gltf::shape_gltf_bytes;
+#[cfg(feature = "shape3d")]
 pub use shape_keys::{ShapeMotion, ShapeReport, ShapeState};
 pub use spine::{SpineFiles, spine_files, write_spine};
 pub use sprites::SpriteSheet;

@@ -126,6 +126,7 @@ impl PendingFile {
     }
 
     /// A file that holds `bytes` and awaits its commit.
+    #[cfg(feature = "shape3d")]
     pub(super) fn filled(target: &Path, bytes: &[u8]) -> Result<Self, ExportError> {
         let mut file = Self::create_among_others(target)?;
         file.write_all(bytes)

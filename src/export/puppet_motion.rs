@@ -1,8 +1,8 @@
 //! What formats of deformed meshes need of an animated [`Puppet`]: keys, hidden stretches, pictures as files.
 
-use super::WriteError;
 use super::keys::{Keys, place_keys};
 use super::png::straight_png_bytes;
+use super::{LayerFault, MotionError, WriteError};
 use crate::math::Point;
 use crate::math::point::is_finite;
 use crate::render::{Puppet, PuppetFrame, PuppetLayer, PuppetTexture};
@@ -48,34 +48,38 @@ impl PuppetMotion<'_> {
     /// Proves what the writers rely on: counts agree, indices exist, numbers are finite.
     ///
     /// # Errors
-    /// What is wrong.
-    pub fn check(&self) -> Result<(), String> {
+    /// [`MotionError`] that names the frame or layer.
+    pub fn check(&self) -> Result<(), MotionError> {
         let Self {
             puppet, times, frames, ..
         } = *self;
         if frames.is_empty() || frames.len() != times.len() {
-            return Err(format!(
-                "{} frames at {} times; at least one is needed",
-                frames.len(),
-                times.len()
-            ));
+            return Err(MotionError::FrameCount {
+                frames: frames.len(),
+                times: times.len(),
+            });
         }
-        if !times.iter().all(|t| t.is_finite()) || times.windows(2).any(|t| t[0] >= t[1]) {
-            return Err("the times of the frames do not increase".to_owned());
+        let is_later = |k: usize| times[k].is_finite() && (k == 0 || times[k - 1] < times[k]);
+        if let Some(frame) = (0..times.len()).find(|&k| !is_later(k)) {
+            return Err(MotionError::Times { frame });
         }
         if puppet.size.contains(&0) || puppet.layers.is_empty() {
-            return Err("there is nothing to show".to_owned());
+            return Err(MotionError::Empty);
         }
-        for layer in &puppet.layers {
-            check_layer(layer)?;
+        for (index, layer) in puppet.layers.iter().enumerate() {
+            check_layer(layer).map_err(|fault| MotionError::Layer {
+                layer: index,
+                name: layer.name.clone(),
+                fault,
+            })?;
         }
-        for frame in frames {
+        for (number, frame) in frames.iter().enumerate() {
             let mut order = frame.order.clone();
             order.sort_unstable();
             if frame.layers.len() != puppet.layers.len() || !order.into_iter().eq(0..puppet.layers.len()) {
-                return Err("a frame does not have the layers of the puppet".to_owned());
+                return Err(MotionError::FrameLayers { frame: number });
             }
-            for (layer, shown) in puppet.layers.iter().zip(&frame.layers) {
+            for (index, (layer, shown)) in puppet.layers.iter().zip(&frame.layers).enumerate() {
                 let vertices = layer.textures.first().map_or(0, |texture| texture.places.len());
                 let numbers = shown.textures.iter().chain([&shown.opacity]);
                 if shown.positions.len() != vertices
@@ -83,7 +87,11 @@ impl PuppetMotion<'_> {
                     || !shown.positions.iter().all(|p| is_finite(*p))
                     || !numbers.into_iter().all(|x| x.is_finite())
                 {
-                    return Err(format!("a frame does not fit layer '{}'", layer.name));
+                    return Err(MotionError::FrameFit {
+                        frame: number,
+                        layer: index,
+                        name: layer.name.clone(),
+                    });
                 }
             }
         }
@@ -162,23 +170,22 @@ impl PuppetMotion<'_> {
     }
 }
 
-fn check_layer(layer: &PuppetLayer) -> Result<(), String> {
+fn check_layer(layer: &PuppetLayer) -> Result<(), LayerFault> {
     let vertices = layer.textures.first().map_or(0, |texture| texture.places.len());
-    let fault = |what: &str| Err(format!("layer '{}': {what}", layer.name));
     if layer.triangles.is_empty() {
-        return fault("there are no triangles");
+        return Err(LayerFault::NoTriangles);
     }
     let mut indices = layer.triangles.iter().flatten().chain(layer.rings.iter().flatten());
-    if indices.any(|&v| v >= vertices) {
-        return fault("a triangle or ring has a vertex that does not exist");
+    if let Some(&vertex) = indices.find(|&&v| v >= vertices) {
+        return Err(LayerFault::MissingVertex { vertex });
     }
-    for texture in &layer.textures {
+    for (index, texture) in layer.textures.iter().enumerate() {
         if texture.places.len() != vertices
             || texture.width * texture.height == 0
             || texture.pixels.len() != texture.width * texture.height
             || !texture.places.iter().all(|p| is_finite(*p))
         {
-            return fault("a texture does not fit the mesh");
+            return Err(LayerFault::Texture { texture: index });
         }
     }
     Ok(())
@@ -337,9 +344,9 @@ mod tests {
         ];
         for (damage, said) in broken {
             let mut turning = turning();
-            assert_eq!(turning.motion(0.1).check(), Ok(()));
+            turning.motion(0.1).check().expect("whole");
             damage(&mut turning);
-            let refusal = turning.motion(0.1).check().expect_err("it is broken");
+            let refusal = turning.motion(0.1).check().expect_err("it is broken").to_string();
             assert!(refusal.contains(said), "{refusal}");
         }
     }

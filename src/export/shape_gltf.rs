@@ -21,6 +21,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
+use super::MotionError;
 use super::gltf_buffer::{GltfBuffer, LINEAR, LINEAR_MIPMAP_LINEAR, container, push, without_empty_lists};
 use super::shape_keys::{ShapeMotion, ShapeReport};
 use crate::math::Point3;
@@ -33,8 +34,8 @@ const ROUGHNESS: f64 = 0.75;
 /// The bytes of a `.glb` file.
 ///
 /// # Errors
-/// What does not fit together in the motion; a file beyond 4 GB.
-pub fn shape_gltf_bytes(motion: &ShapeMotion<'_>) -> Result<(Vec<u8>, ShapeReport), String> {
+/// [`MotionError`] if the motion does not fit together, or the file would be larger than 4 GB.
+pub fn shape_gltf_bytes(motion: &ShapeMotion<'_>) -> Result<(Vec<u8>, ShapeReport), MotionError> {
     motion.check()?;
     let keys = motion.keys();
     let report = ShapeReport {
@@ -254,7 +255,7 @@ impl File {
             .push(json!({ "sampler": sampler, "target": { "node": node, "path": path } }));
     }
 
-    fn finish(self, motion: &ShapeMotion<'_>, roots: &[usize], report: &ShapeReport) -> Result<Vec<u8>, String> {
+    fn finish(self, motion: &ShapeMotion<'_>, roots: &[usize], report: &ShapeReport) -> Result<Vec<u8>, MotionError> {
         let mut surface = json!({ "metallicFactor": 0.0, "roughnessFactor": ROUGHNESS });
         if self.images.is_empty() {
             surface["baseColorFactor"] = json!(CLAY);

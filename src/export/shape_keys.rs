@@ -10,6 +10,7 @@
 
 use rayon::prelude::*;
 
+use super::MotionError;
 use crate::math::Point3;
 use crate::shape3d::{Form, FormTopology, LocalPose, Matrix3, Rig, Transform};
 
@@ -61,7 +62,7 @@ pub struct ShapeReport {
 
 impl ShapeMotion<'_> {
     /// Says what does not fit together.
-    pub(super) fn check(&self) -> Result<(), String> {
+    pub(super) fn check(&self) -> Result<(), MotionError> {
         let count = self.forms.len();
         let joints = self.rig.map_or(0, |rig| rig.skeleton().joints().len());
         let vertices = self.topology.vertex_count();
@@ -72,14 +73,17 @@ impl ShapeMotion<'_> {
             && self.forms.iter().all(|form| form.positions().len() == vertices)
             && self.rig.is_none_or(|rig| rig.skin().vertex_count() == vertices);
         if !fits {
-            return Err("forms, normals and skin do not have the same vertices".to_owned());
+            return Err(MotionError::Vertices { expected: vertices });
         }
         let states = || self.states.iter();
         if self.times.is_empty()
             || self.times.len() != self.states.len()
             || states().any(|state| state.weights.len() != count || state.joints.len() != joints)
         {
-            return Err("there is not one state a time, with a weight an example and a pose a joint".to_owned());
+            return Err(MotionError::States {
+                times: self.times.len(),
+                states: self.states.len(),
+            });
         }
         Ok(())
     }

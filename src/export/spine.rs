@@ -20,7 +20,7 @@ use serde_json::{Map, Value, json};
 
 use super::keys::place_keys;
 use super::puppet_motion::{LayerMotion, PuppetMotion, PuppetReport, changes, texture_png};
-use super::{ExportError, PendingFile};
+use super::{ExportError, MotionError, PendingFile, WriteError};
 use crate::math::Point;
 use crate::render::{PuppetLayer, Sampling};
 
@@ -55,9 +55,9 @@ pub fn write_spine(output: &Path, motion: &PuppetMotion<'_>) -> Result<(Vec<Path
         (Some(folder), Some(stem)) if is_json && !output.is_dir() => (folder, stem.to_string_lossy().into_owned()),
         _ => (output, file_name(motion.name)),
     };
-    let unsuitable = |reason: String| ExportError::Unsuitable {
+    let unsuitable = |error: MotionError| ExportError::Unsuitable {
         path: output.to_owned(),
-        reason,
+        reason: error.to_string(),
     };
     let files = spine_files(motion, &stem).map_err(unsuitable)?;
     let folder = if folder.as_os_str().is_empty() {
@@ -103,8 +103,8 @@ fn write_all(folder: &Path, files: Vec<(String, Vec<u8>)>) -> Result<Vec<PathBuf
 /// The files of a skeleton; the atlas and pictures are called after `stem`.
 ///
 /// # Errors
-/// What is wrong with the motion, see [`PuppetMotion::check`].
-pub fn spine_files(motion: &PuppetMotion<'_>, stem: &str) -> Result<SpineFiles, String> {
+/// [`MotionError`] if the motion does not fit together, see [`PuppetMotion::check`].
+pub fn spine_files(motion: &PuppetMotion<'_>, stem: &str) -> Result<SpineFiles, MotionError> {
     motion.check()?;
     // Rounding takes its part of the error allowed: half a unit of the last decimal in x and y, in the setup pose and in the offset.
     let rounding = 2.0 * std::f64::consts::FRAC_1_SQRT_2 * 10f64.powi(-DECIMALS);
@@ -144,12 +144,12 @@ pub fn spine_files(motion: &PuppetMotion<'_>, stem: &str) -> Result<SpineFiles, 
             "{file}\nsize: {width}, {height}\nfilter: {filter}, {filter}\n{}\nbounds: 0, 0, {width}, {height}\n\n",
             slot.name
         ));
-        pictures.push((file, texture_png(texture).map_err(|error| error.to_string())?));
+        pictures.push((file, texture_png(texture)?));
     }
     let skeleton = skeleton(motion, &layers, &slots, stem);
     let worst = layers.iter().map(|motion| motion.keys.worst).fold(0.0, f64::max);
     Ok(SpineFiles {
-        json: serde_json::to_vec(&skeleton).map_err(|error| error.to_string())?,
+        json: serde_json::to_vec(&skeleton).map_err(|error| WriteError::Encoding(Box::new(error)))?,
         atlas: atlas.into_bytes(),
         pictures,
         report: PuppetReport {

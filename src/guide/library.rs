@@ -25,9 +25,7 @@
 //! [`Drawing`](crate::input::Drawing), and the options of every stage. A scene file is one way to make it, and this is another:
 //!
 //! ```
-//! use inbetween::animation::Animation;
-//! use inbetween::input::{BitmapOptions, read_pixels};
-//! use inbetween::pipeline::{Character, CharacterSpec, LayerSpec, PoseSpec};
+//! use inbetween::{Animation, BitmapOptions, Character, CharacterSpec, LayerSpec, PoseSpec, read_pixels};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // A bar, wide or narrow; four bytes a pixel, red, green, blue, alpha.
@@ -46,6 +44,10 @@
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! Options are set in one way everywhere: made with `default()`, or a specification with its `new` or the like, and then given what is wanted in
+//! their fields, as in `let mut options = BlendOptions::default(); options.stretch = Stretch::Log;`. Later versions can add fields
+//! without breaking what is written so.
 //!
 //! What the command does with drawings by itself is asked for here: [`with_loose_parts`](crate::pipeline::CharacterSpec::with_loose_parts) makes layers
 //! of loose parts, [`with_facings`](crate::pipeline::CharacterSpec::with_facings) settles which way drawings face, and
@@ -128,12 +130,20 @@
 //!
 //! | feature | what it adds |
 //! |---|---|
-//! | `cli`, on by default | the command |
-//! | `explorer`, on by default | `inbetween explore` |
+//! | none of them | the core: outlines to mappings, weights, blended vertices and painted frames; no file is opened |
+//! | `images` | drawings in pixels, of files and of memory ([`read_bitmap`](crate::input::read_bitmap), [`read_pixels`](crate::input::read_pixels)) |
+//! | `svg` | SVG drawings ([`read_svg`](crate::input::read_svg)); takes `images` along |
+//! | `export` | every writer ([`export`](crate::export)) |
+//! | `shape3d` | Shape by Example in space ([`shape3d`](crate::shape3d)), with `export` its files |
+//! | `scene` | scene files ([`scene`](crate::scene)); takes all of these along |
+//! | `cli` | the command; takes `scene` along |
+//! | `explorer` | `inbetween explore`; takes `cli` along |
 //! | `kurbo`, `tiny_skia`, `lyon` | conversions to and from the paths of these crates ([`interop`](crate::interop)) |
-//! | `lyon` | frames of curves as triangles for engines, too |
+//! | `lyon` with `export` | frames of curves as triangles for engines, too |
 //!
-//! A library user writes `default-features = false` and compiles none of the command's dependencies.
+//! All but the last two rows are on by default. A program that has outlines writes `default-features = false` and compiles linear algebra, a
+//! triangulation and small crates; one that reads and writes pictures adds `features = ["images", "svg", "export"]`. Without
+//! `svg` a drawing keeps the pixels that it was given, however large its frames are.
 //!
 //! # How fast
 //!

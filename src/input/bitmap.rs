@@ -22,9 +22,9 @@ use super::decode::{Decoded, PictureChoice, count_frames, decode_chosen, image_o
 use super::figure::{FigureKind, FigureRule, PaperRule};
 use super::found::{Found, find};
 use super::iso_line::{Part, Parts};
-use super::loose::{LoosePart, PartOptions, Piece, choose, note_pieces};
-use super::picture::premultiplied;
-use super::{Canvas, Drawing, InputError, InputNote, Picture};
+use super::loose::{Piece, choose, note_pieces};
+use super::picture_file::premultiplied;
+use super::{Canvas, Drawing, HoleRule, InputError, InputNote, LoosePart, PartOptions, Picture};
 use crate::math::Point;
 use crate::outline::{Outline, Ring};
 
@@ -45,18 +45,9 @@ const CROP_MARGIN: usize = 6;
 /// The widest gap that is closed, as a fraction of the diagonal: wider, the inside of letters would close.
 const LARGEST_GAP: f64 = 0.2;
 
-/// What becomes of holes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum HoleRule {
-    /// They are part of the outline.
-    #[default]
-    Keep,
-    /// They are closed, and the picture keeps its pixels there.
-    Fill,
-}
-
 /// How a bitmap is read.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct BitmapOptions {
     /// How the figure is told from its sheet. Default: by evidence.
     pub figure: FigureRule,

@@ -11,9 +11,6 @@ pub struct Canvas {
     pub high: Point,
 }
 
-/// Page sizes of SVG files come in single precision: what differs from a whole number by less than this share of itself is that number.
-const ROUNDING: f64 = 1e-5;
-
 impl Canvas {
     /// The canvas of a bitmap of `width` x `height` pixels.
     #[must_use]
@@ -21,22 +18,6 @@ impl Canvas {
         Self {
             low: Point::zeros(),
             high: Point::new(width as f64, height as f64),
-        }
-    }
-
-    /// A page, its numbers freed of rounding.
-    pub(super) fn of_page(page: kurbo::Rect) -> Self {
-        let size = page.width().abs().max(page.height().abs());
-        let tidy = |v: f64| {
-            if (v - v.round()).abs() < ROUNDING * size {
-                v.round()
-            } else {
-                v
-            }
-        };
-        Self {
-            low: Point::new(tidy(page.x0), tidy(page.y0)),
-            high: Point::new(tidy(page.x1), tidy(page.y1)),
         }
     }
 

@@ -26,7 +26,7 @@ use super::svg_art::read_art;
 use super::svg_effects::are_cut;
 use super::svg_numbers::check_numbers;
 use super::svg_silhouette::{Pieces, affine, silhouette};
-use super::{Art, Canvas, Drawing, HoleRule, InputError, InputNote, LoosePart, PartOptions, Picture, svg_text};
+use super::{Art, Canvas, Drawing, Extent, InputError, InputNote, LoosePart, Picture, SvgOptions, svg_text};
 use crate::math::{Point, point};
 use crate::outline::Outline;
 
@@ -50,34 +50,6 @@ const LARGEST_SIDE: f64 = 8192.0;
 
 /// Pixels around the outline.
 const MARGIN_PX: f64 = 2.0;
-
-/// How an SVG file is read.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct SvgOptions {
-    /// The id of the element whose outline is meant. Default: everything that is drawn.
-    pub element: Option<String>,
-    /// What belongs to the drawing. Default: everything in the file.
-    pub extent: Extent,
-    /// Pixels to a user unit of the picture, at most as many as make it 8192 pixels long. Default: as many as make the
-    /// longer side of the outline 1024 pixels long.
-    pub pixels_per_unit: Option<f64>,
-    /// What becomes of holes. Default: kept.
-    pub holes: HoleRule,
-    /// Which loose parts belong to it. Default: those that are no dirt.
-    pub parts: PartOptions,
-    /// The corners, in user units, of what the picture is to show. Default: the box of the outline.
-    pub around: Option<[Point; 2]>,
-}
-
-/// What of an SVG file belongs to a drawing of which an element is named.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Extent {
-    /// Everything in the file: the element is the shape's silhouette, painted over by the others.
-    #[default]
-    Everything,
-    /// Only the element, with all that is in it: a file that holds several layers.
-    Element,
-}
 
 /// Reads the drawing in the file at `path`; see [`read_svg`].
 ///

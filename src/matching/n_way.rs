@@ -41,6 +41,7 @@ const ORIENTING_LANDMARKS: usize = 3;
 
 /// How outlines are matched.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct MatchOptions {
     /// The pose that all others are matched to. Default: the first, or the one that is
     /// clearly the most alike to all others.

@@ -6,20 +6,20 @@ use super::point::{Point, cross};
 
 /// The angle from direction `a` to direction `b`, in `(-pi, pi]`; 0 if either has no length.
 #[must_use]
-pub fn between(a: Point, b: Point) -> f64 {
+pub(crate) fn between(a: Point, b: Point) -> f64 {
     libm::atan2(cross(a, b), a.dot(&b))
 }
 
 /// `angle_rad` moved by whole turns into `(-pi, pi]`.
 #[must_use]
-pub fn wrap(angle_rad: f64) -> f64 {
+pub(crate) fn wrap(angle_rad: f64) -> f64 {
     let wrapped = angle_rad - TAU * (angle_rad / TAU).round();
     if wrapped <= -PI { wrapped + TAU } else { wrapped }
 }
 
 /// The angle equal to `angle_rad` up to whole turns that lies nearest to `reference_rad`.
 #[must_use]
-pub fn nearest_turn(angle_rad: f64, reference_rad: f64) -> f64 {
+pub(crate) fn nearest_turn(angle_rad: f64, reference_rad: f64) -> f64 {
     angle_rad + TAU * ((reference_rad - angle_rad) / TAU).round()
 }
 

@@ -23,6 +23,7 @@ impl DisjointSets {
     }
 
     /// Adds a thing in a set of its own, and returns its number.
+    #[cfg(feature = "images")]
     pub(crate) fn add(&mut self) -> usize {
         let number = self.parents.len();
         self.parents.push(number as u32);

@@ -7,25 +7,27 @@
 //! Decisions (left or right, crossing or not) are taken by [`predicate`], which is exact; measurements (lengths,
 //! areas, angles) are plain floating point.
 
-pub mod angle;
+pub(crate) mod angle;
 mod disjoint_sets;
 pub mod matrix;
 pub mod point;
 mod point3;
 pub mod predicate;
 mod restricted;
-pub mod sine;
+pub(crate) mod sine;
 mod single_precision;
-pub mod smooth_step;
+mod smooth_step;
 mod vectorised;
 mod wrapped;
 
 pub(crate) use disjoint_sets::DisjointSets;
-pub use matrix::{Matrix, PolarSplit, rotation};
+pub(crate) use matrix::PolarSplit;
+pub use matrix::{Matrix, rotation};
 pub use point::Point;
 pub use point3::Point3;
 pub use restricted::restricted_weights;
 pub use single_precision::{NotSingle, SinglePrecision};
-pub use smooth_step::{limit_weights, smooth_step};
-pub use vectorised::vectorised;
-pub use wrapped::wrapped;
+pub(crate) use smooth_step::limit_weights;
+pub use smooth_step::smooth_step;
+pub(crate) use vectorised::vectorised;
+pub(crate) use wrapped::wrapped;

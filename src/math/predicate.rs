@@ -10,7 +10,7 @@ use super::point::Point;
 /// The side of the directed line `a b` on which `c` lies: `Greater` for a positive triangle `a b c`, `Equal` when
 /// the three are collinear.
 #[must_use]
-pub fn orientation(a: Point, b: Point, c: Point) -> Ordering {
+pub(crate) fn orientation(a: Point, b: Point, c: Point) -> Ordering {
     let coord = |p: Point| robust::Coord { x: p.x, y: p.y };
     let determinant = robust::orient2d(coord(a), coord(b), coord(c));
     determinant.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
@@ -29,7 +29,7 @@ const CROSS_ERROR: f64 = 4.0 * f64::EPSILON;
 /// Whether twice the area of the triangle `a b c` is above `floor`, whatever rounding did: `false` where rounding could
 /// decide, and where a coordinate is not finite. Costs no more than the area.
 #[must_use]
-pub fn surely_above(a: Point, b: Point, c: Point, floor: f64) -> bool {
+pub(crate) fn surely_above(a: Point, b: Point, c: Point, floor: f64) -> bool {
     let (left, right) = ((b.x - a.x) * (c.y - a.y), (b.y - a.y) * (c.x - a.x));
     // Infinity minus infinity is not a number, and compares as false.
     left - right > floor + CROSS_ERROR * (left.abs() + right.abs())
@@ -37,7 +37,7 @@ pub fn surely_above(a: Point, b: Point, c: Point, floor: f64) -> bool {
 
 /// Whether the open segments `a b` and `c d` cross in one interior point of both.
 #[must_use]
-pub fn cross_properly(a: Point, b: Point, c: Point, d: Point) -> bool {
+pub(crate) fn cross_properly(a: Point, b: Point, c: Point, d: Point) -> bool {
     let (abc, abd) = (orientation(a, b, c), orientation(a, b, d));
     if abc == Ordering::Equal || abd == Ordering::Equal || abc == abd {
         return false;
@@ -48,7 +48,7 @@ pub fn cross_properly(a: Point, b: Point, c: Point, d: Point) -> bool {
 
 /// Whether the closed segments `a b` and `c d` share any point.
 #[must_use]
-pub fn touch(a: Point, b: Point, c: Point, d: Point) -> bool {
+pub(crate) fn touch(a: Point, b: Point, c: Point, d: Point) -> bool {
     let (abc, abd) = (orientation(a, b, c), orientation(a, b, d));
     let (cda, cdb) = (orientation(c, d, a), orientation(c, d, b));
     if abc != abd && cda != cdb {
@@ -62,13 +62,13 @@ pub fn touch(a: Point, b: Point, c: Point, d: Point) -> bool {
 
 /// Whether `p` lies on the closed segment `a b`.
 #[must_use]
-pub fn on_segment(p: Point, a: Point, b: Point) -> bool {
+pub(crate) fn on_segment(p: Point, a: Point, b: Point) -> bool {
     orientation(a, b, p) == Ordering::Equal && in_box(p, a, b)
 }
 
 /// Whether the edge `b c` runs back over its predecessor `a b`.
 #[must_use]
-pub fn folds_back(a: Point, b: Point, c: Point) -> bool {
+pub(crate) fn folds_back(a: Point, b: Point, c: Point) -> bool {
     orientation(a, b, c).is_eq() && (a - b).dot(&(c - b)) > 0.0
 }
 

@@ -13,13 +13,13 @@
 
 /// Angles in one call. Four registers of two numbers each, and a few of these blocks in flight, keep a processor busy;
 /// the triangles of a mesh are padded to a multiple of it.
-pub const LANES: usize = 32;
+pub(crate) const LANES: usize = 32;
 
 /// A value for each of [`LANES`] angles.
-pub type Lanes = [f64; LANES];
+pub(crate) type Lanes = [f64; LANES];
 
 /// Up to here `k` has at most 20 bits, and its products with parts of 33 bits are exact.
-pub const LARGEST_RAD: f64 = 1.0e6;
+pub(crate) const LARGEST_RAD: f64 = 1.0e6;
 
 /// Adding and subtracting it rounds to the nearest integer, which is then found in the lowest bits of the sum.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
@@ -53,7 +53,7 @@ const COSINE: [f64; 6] = [
 
 /// Sines and cosines of `angles_rad`. Angles that are not finite give NaN.
 #[inline(always)]
-pub fn sines_and_cosines(angles_rad: &Lanes, sines: &mut Lanes, cosines: &mut Lanes) {
+pub(crate) fn sines_and_cosines(angles_rad: &Lanes, sines: &mut Lanes, cosines: &mut Lanes) {
     // Eight at a time stay in registers from the first step to the last.
     const TOGETHER: usize = 8;
     let mut largest = 0.0_f64;

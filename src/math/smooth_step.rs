@@ -19,7 +19,7 @@ pub fn smooth_step(value: f64, from: f64, to: f64) -> f64 {
 
 /// The limited weights `w'` of NWM 4.2: each weight through the Hermite cubic, then scaled to sum 1. They lie in
 /// `[0, 1]` for any weights that sum to 1, and equal them at every pose. `limited` is overwritten.
-pub fn limit_weights(weights: &[f64], limited: &mut Vec<f64>) {
+pub(crate) fn limit_weights(weights: &[f64], limited: &mut Vec<f64>) {
     limited.clear();
     limited.extend(weights.iter().map(|&weight| smooth_step(weight, 0.0, 1.0)));
     // Weights that sum to 1 have a positive one, and so a positive step.

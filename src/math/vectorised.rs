@@ -4,6 +4,6 @@
 /// profit. The result is the same to the last bit: wider registers do more operations at a time, not others, and the
 /// compiler never fuses a multiplication with an addition on its own.
 #[inline(always)]
-pub fn vectorised<R>(work: impl FnOnce() -> R) -> R {
+pub(crate) fn vectorised<R>(work: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(work)
 }

@@ -4,7 +4,7 @@
 ///
 /// Nearly all of them have none, and the remainder of a division takes twenty times as long as asking.
 #[must_use]
-pub fn wrapped(t: f64) -> f64 {
+pub(crate) fn wrapped(t: f64) -> f64 {
     if (0.0..1.0).contains(&t) { t } else { t.rem_euclid(1.0) }
 }
 

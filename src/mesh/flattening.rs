@@ -9,7 +9,11 @@ use crate::math::{Point, point};
 /// The share of `direction` (#vertices) at which the first of `triangles` becomes flat; infinite if none does. All of them are
 /// positive at `positions` (#vertices).
 #[must_use]
-pub fn first_flat(triangles: impl IntoIterator<Item = [usize; 3]>, positions: &[Point], direction: &[Point]) -> f64 {
+pub(crate) fn first_flat(
+    triangles: impl IntoIterator<Item = [usize; 3]>,
+    positions: &[Point],
+    direction: &[Point],
+) -> f64 {
     triangles
         .into_iter()
         .map(|triangle| {

@@ -16,14 +16,14 @@ pub fn signed_area([a, b, c]: [Point; 3]) -> f64 {
 
 /// The matrix whose columns are the edges `a b` and `a c`.
 #[must_use]
-pub fn edge_matrix([a, b, c]: [Point; 3]) -> Matrix {
+pub(crate) fn edge_matrix([a, b, c]: [Point; 3]) -> Matrix {
     Matrix::from_columns(&[b - a, c - a])
 }
 
 /// The gradients of the three barycentric coordinates: row `k` of a linear function's gradient operator, so that the
 /// gradient of the function with corner values `f` is the sum of `f[k] * gradients[k]`. `None` for zero area.
 #[must_use]
-pub fn barycentric_gradients(triangle: [Point; 3]) -> Option<[Point; 3]> {
+pub(crate) fn barycentric_gradients(triangle: [Point; 3]) -> Option<[Point; 3]> {
     let double_area = 2.0 * signed_area(triangle);
     if double_area == 0.0 {
         return None;
@@ -53,7 +53,7 @@ fn angle_rad(p: Point, q: Point, r: Point) -> f64 {
 
 /// The smallest interior angle, in radians: the one opposite to the shortest edge.
 #[must_use]
-pub fn smallest_angle_rad([a, b, c]: [Point; 3]) -> f64 {
+pub(crate) fn smallest_angle_rad([a, b, c]: [Point; 3]) -> f64 {
     let (ab, bc, ca) = ((b - a).norm_squared(), (c - b).norm_squared(), (a - c).norm_squared());
     if bc <= ca && bc <= ab {
         angle_rad(a, b, c)
@@ -65,7 +65,7 @@ pub fn smallest_angle_rad([a, b, c]: [Point; 3]) -> f64 {
 }
 
 /// A triangle's smallest interior angle over several embeddings, in radians.
-pub fn worst_angle_rad<'a>(embeddings: impl IntoIterator<Item = &'a [Point]>, triangle: [usize; 3]) -> f64 {
+pub(crate) fn worst_angle_rad<'a>(embeddings: impl IntoIterator<Item = &'a [Point]>, triangle: [usize; 3]) -> f64 {
     let angles = embeddings
         .into_iter()
         .map(|positions| smallest_angle_rad(corners(positions, triangle)));
@@ -74,7 +74,7 @@ pub fn worst_angle_rad<'a>(embeddings: impl IntoIterator<Item = &'a [Point]>, tr
 
 /// Every triangle's smallest angle over all embeddings, in degrees, in increasing order.
 #[must_use]
-pub fn worst_angles_deg(embeddings: &[Vec<Point>], triangles: &[[usize; 3]]) -> Vec<f64> {
+pub(crate) fn worst_angles_deg(embeddings: &[Vec<Point>], triangles: &[[usize; 3]]) -> Vec<f64> {
     let worst = |&triangle| worst_angle_rad(embeddings.iter().map(Vec::as_slice), triangle).to_degrees();
     let mut angles: Vec<f64> = triangles.iter().map(worst).collect();
     angles.sort_by(f64::total_cmp);

@@ -10,10 +10,11 @@ mod subdivision;
 mod topology;
 pub mod validity;
 
-pub use flattening::first_flat;
+pub(crate) use flattening::first_flat;
 pub use locate::{Located, PointLocator};
 pub use mesh_point::MeshPoint;
 pub use smooth_points::SmoothPoints;
 pub use subdivision::subdivided;
+pub(crate) use topology::directed_edges;
 pub(crate) use topology::undirected;
-pub use topology::{Topology, TopologyError, directed_edges};
+pub use topology::{Topology, TopologyError};

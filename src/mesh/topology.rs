@@ -246,7 +246,7 @@ impl Topology {
 
 /// The three directed edges of a triangle; edge `k` runs from corner `k` to corner `k + 1`.
 #[must_use]
-pub fn directed_edges([a, b, c]: [usize; 3]) -> [(usize, usize); 3] {
+pub(crate) fn directed_edges([a, b, c]: [usize; 3]) -> [(usize, usize); 3] {
     [(a, b), (b, c), (c, a)]
 }
 

@@ -135,7 +135,7 @@ impl ArcLength {
 
 /// How far two parameters of a closed curve are apart, the shorter way around: at most 1/2.
 #[must_use]
-pub fn parameter_gap(a: f64, b: f64) -> f64 {
+pub(crate) fn parameter_gap(a: f64, b: f64) -> f64 {
     let gap = wrapped(a - b);
     gap.min(1.0 - gap)
 }

@@ -1,16 +1,17 @@
 //! Closed curves: rings of points, outlines with holes, arc length, simplicity.
 //!
 //! A [`Ring`] is any closed polygon with at least three distinct consecutive points; an [`Outline`] is one pose's
-//! shape, an outer ring of positive area and holes of negative area. [`simplicity`] decides exactly whether the rings
+//! shape, an outer ring of positive area and holes of negative area. `simplicity` decides exactly whether the rings
 //! of an outline cross or touch.
 
 mod arc_length;
 mod ring;
 mod shape;
-pub mod simplicity;
+pub(crate) mod simplicity;
 #[cfg(test)]
 pub(crate) mod testing;
 
-pub use arc_length::{ArcLength, parameter_gap};
+pub use arc_length::ArcLength;
+pub(crate) use arc_length::parameter_gap;
 pub use ring::{Ring, RingError};
 pub use shape::{Outline, OutlineError};

@@ -26,7 +26,7 @@ pub enum RingError {
 
 /// A closed polygon: the last point joins the first. At least three points, all finite, no two neighbours equal.
 ///
-/// It may cross itself; [`super::simplicity`] tells.
+/// It may cross itself; an [`Outline`](super::Outline) is made of rings that do not.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ring {
     points: Vec<Point>,

@@ -10,7 +10,7 @@ use crate::math::{Point, predicate};
 
 /// Two edges that share a point they should not.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Meeting {
+pub(crate) struct Meeting {
     /// Ring and edge of the one that comes first.
     pub first: (usize, usize),
     /// Ring and edge of the other.
@@ -22,7 +22,7 @@ pub struct Meeting {
 /// The first pair of edges, in ring and edge order, that meet: neighbours may share their common vertex and nothing
 /// else, all others nothing.
 #[must_use]
-pub fn first_meeting(rings: &[Ring]) -> Option<Meeting> {
+pub(crate) fn first_meeting(rings: &[Ring]) -> Option<Meeting> {
     let mut edges = Vec::new();
     for (ring, points) in rings.iter().enumerate() {
         for (edge, (a, b)) in points.edges().enumerate() {

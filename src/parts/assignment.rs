@@ -8,7 +8,7 @@
 ///
 /// Equal sums go to the lower columns of the first rows.
 #[must_use]
-pub fn assign(costs: &[Vec<f64>]) -> Vec<usize> {
+pub(crate) fn assign(costs: &[Vec<f64>]) -> Vec<usize> {
     let columns = costs.first().map_or(0, Vec::len);
     // Column 0 is a place from which the row that is added starts; rows and columns are counted from 1.
     let mut row_potential = vec![0.0; costs.len() + 1];

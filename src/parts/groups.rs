@@ -28,7 +28,7 @@ const SMALL_PLACE: f64 = 0.2;
 
 /// Which parts of the poses are one thing.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PartGroups {
+pub(crate) struct PartGroups {
     /// For each thing the part that it is in each pose, by index; the thing with the largest area over all poses first.
     pub things: Vec<Vec<Option<usize>>>,
     /// For each pose the parts that are none.
@@ -37,7 +37,7 @@ pub struct PartGroups {
 
 /// Groups the parts of all poses, #poses lists. `is_kept` says which parts (pose, part) are things whatever their size.
 #[must_use]
-pub fn group(poses: &[Vec<PartShape>], is_kept: &dyn Fn(usize, usize) -> bool) -> PartGroups {
+pub(crate) fn group(poses: &[Vec<PartShape>], is_kept: &dyn Fn(usize, usize) -> bool) -> PartGroups {
     let scales: Vec<Scale> = poses.iter().map(|parts| Scale::of(parts)).collect();
     let candidates: Vec<Vec<usize>> = (poses.iter().zip(&scales).enumerate())
         .map(|(pose, (parts, scale))| candidates(parts, scale, &|part| is_kept(pose, part)))

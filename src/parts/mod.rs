@@ -5,7 +5,7 @@
 //! 1. [`PartShape`]: each part's place, size, colour, elongation and what landmarks lie on it, relative to the whole figure, so that the
 //!    figure's own place and size do not count.
 //! 2. Poses are taken in turn, the one with the most parts first; the parts of each are assigned to the things known so far at the least
-//!    sum of costs ([`assign`]: the Hungarian method). A pair that costs more than leaving both alone stays apart, and what is left over is
+//!    sum of costs (`assign`: the Hungarian method). A pair that costs more than leaving both alone stays apart, and what is left over is
 //!    a new thing.
 //! 3. Small bits that are in one pose only, and crowds of them, are dust ([`PartGroups::dust`]).
 //! 4. [`origin`]: where a thing that a pose lacks grows from there.
@@ -20,10 +20,9 @@ mod groups;
 mod origin;
 mod shape;
 
-pub use assignment::assign;
-pub use groups::{PartGroups, group};
-pub use origin::{Origin, origin};
-pub use shape::{PartShape, nearest_part};
+pub(crate) use groups::{PartGroups, group};
+pub(crate) use origin::origin;
+pub(crate) use shape::{PartShape, nearest_part};
 
 /// The most loose parts of one drawing that are told apart: of more, the smallest are dust.
-pub const MOST_PARTS: usize = 48;
+pub(crate) const MOST_PARTS: usize = 48;

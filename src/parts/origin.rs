@@ -20,7 +20,7 @@ const SAME_FORM: f64 = 0.15;
 
 /// Where a thing begins in a pose that lacks it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Origin {
+pub(crate) struct Origin {
     /// The pose that it is a copy of there: the first that has it.
     pub of: usize,
     /// Where it begins, in source units of the pose that lacks it.
@@ -29,7 +29,7 @@ pub struct Origin {
 
 /// Where thing `thing` begins in pose `pose`, which lacks it. `None` if no pose has it.
 #[must_use]
-pub fn origin(groups: &PartGroups, poses: &[Vec<PartShape>], thing: usize, pose: usize) -> Option<Origin> {
+pub(crate) fn origin(groups: &PartGroups, poses: &[Vec<PartShape>], thing: usize, pose: usize) -> Option<Origin> {
     let (of, own) =
         (groups.things[thing].iter().enumerate()).find_map(|(other, part)| Some((other, &poses[other][(*part)?])))?;
     let neighbours = groups.things.iter().filter_map(|other| {

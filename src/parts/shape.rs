@@ -9,7 +9,7 @@ const COLOUR_SAMPLES: usize = 24;
 
 /// A part of one pose, measured.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PartShape {
+pub(crate) struct PartShape {
     /// Its area, in source units squared, holes subtracted.
     pub area: f64,
     /// The centroid of its outer ring, in source units.
@@ -27,7 +27,7 @@ pub struct PartShape {
 impl PartShape {
     /// The part of `outline`, painted as in `picture`; no landmark lies on it.
     #[must_use]
-    pub fn of(outline: &Outline, picture: &Picture) -> Self {
+    pub(crate) fn of(outline: &Outline, picture: &Picture) -> Self {
         let points = outline.outer().points();
         let (low, high) = point::bounding_box(points).unwrap_or_default();
         let moments = Moments::of(points);
@@ -43,7 +43,7 @@ impl PartShape {
 
     /// The part reflected left to right: x becomes `axis - x`.
     #[must_use]
-    pub fn mirrored(mut self, axis: f64) -> Self {
+    pub(crate) fn mirrored(mut self, axis: f64) -> Self {
         let [low, high] = self.bounds;
         self.centroid.x = axis - self.centroid.x;
         self.bounds = [Point::new(axis - high.x, low.y), Point::new(axis - low.x, high.y)];
@@ -52,13 +52,13 @@ impl PartShape {
 
     /// Its width and height.
     #[must_use]
-    pub fn extent(&self) -> Point {
+    pub(crate) fn extent(&self) -> Point {
         self.bounds[1] - self.bounds[0]
     }
 
     /// Whether it lies behind what stands over it: it is translucent, or grey, flat and at the foot of `body`, as a shadow on the ground is.
     #[must_use]
-    pub fn is_shadow_of(&self, body: &Self) -> bool {
+    pub(crate) fn is_shadow_of(&self, body: &Self) -> bool {
         /// Paint that is meant to be opaque is, but for its edge.
         const OPAQUE: f64 = 0.9;
         /// The most that channels of a grey differ.
@@ -75,7 +75,7 @@ impl PartShape {
 
 /// The part that a place belongs to: the one that it lies in, or else the nearest. `None` where there are no parts.
 #[must_use]
-pub fn nearest_part<'a>(parts: impl IntoIterator<Item = &'a Outline>, place: Point) -> Option<usize> {
+pub(crate) fn nearest_part<'a>(parts: impl IntoIterator<Item = &'a Outline>, place: Point) -> Option<usize> {
     let distance = |outline: &Outline| {
         if outline.contains(place) {
             0.0

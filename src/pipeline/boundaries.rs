@@ -87,7 +87,10 @@ impl Boundaries {
         let alone = alone.map_err(refusal)?;
         // Where drawings say what corresponds, the mesh is held to it.
         let options = match (&guide, options.drift) {
-            (Some(_), None) => options.with_drift((DRIFT_SHARE * layer.mesh.simplify.tolerance).max(LEAST_DRIFT)),
+            (Some(_), None) => SimplifyOptions {
+                drift: Some((DRIFT_SHARE * layer.mesh.simplify.tolerance).max(LEAST_DRIFT)),
+                ..options
+            },
             _ => options,
         };
         begins(Stage::Simplification);

@@ -1,5 +1,6 @@
 //! A character ready to be shown in any pose.
 
+#[cfg(feature = "export")]
 mod runtime;
 
 use std::sync::Arc;

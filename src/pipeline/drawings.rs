@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::PipelineError;
 use super::landmark_ring::hole_ties;
 use super::spec::{DrawnPose, Facing, LayerSpec, SvgSource, UnsharedHoles};
-use crate::input::{Drawing, InputError, SvgOptions, read_svg};
+use crate::input::{Drawing, InputError};
 use crate::matching::shared_holes;
 use crate::math::Point;
 use crate::math::point::bounding_box;
@@ -58,12 +58,17 @@ impl DrawnPose {
     }
 
     /// The drawing as it is used, of a vector drawing whose pixels are made again, `pixels_per_unit` of them.
+    #[cfg(feature = "svg")]
     fn finer(&self, svg: &SvgSource, pixels_per_unit: f64) -> Result<Drawing, InputError> {
-        let options = SvgOptions {
-            pixels_per_unit: Some(pixels_per_unit),
-            ..svg.options.clone()
-        };
-        self.placed(read_svg(&svg.bytes, &options)?)
+        let mut options = svg.options.clone();
+        options.pixels_per_unit = Some(pixels_per_unit);
+        self.placed(crate::input::read_svg(&svg.bytes, &options)?)
+    }
+
+    /// The drawing as it is used: nothing here can read a vector drawing.
+    #[cfg(not(feature = "svg"))]
+    fn finer(&self, _: &SvgSource, _: f64) -> Result<Drawing, InputError> {
+        self.as_used().map(Arc::unwrap_or_clone)
     }
 }
 

@@ -230,13 +230,13 @@ pub enum PipelineError {
         /// What is wrong and what to do.
         message: String,
     },
-    /// A stage refused; the message says why.
-    #[error("{}{message}", pose.as_ref().map(|p| format!("pose '{p}': ")).unwrap_or_default())]
+    /// A stage refused; its own error says why.
+    #[error("{}{source}", pose.as_ref().map(|p| format!("pose '{p}': ")).unwrap_or_default())]
     Stage {
         /// The pose's name, where one is to blame.
         pose: Option<String>,
         /// What is wrong.
-        message: String,
+        source: Box<dyn std::error::Error + Send + Sync>,
     },
     /// The places of the poses allow no weights.
     #[error("pose space: {message}")]
@@ -356,10 +356,14 @@ impl PipelineError {
     }
 
     /// A stage's refusal about the pose of an index.
-    pub(super) fn stage(names: &[String], pose: Option<usize>, message: impl std::fmt::Display) -> Self {
+    pub(super) fn stage(
+        names: &[String],
+        pose: Option<usize>,
+        source: impl Into<Box<dyn std::error::Error + Send + Sync>>,
+    ) -> Self {
         Self::Stage {
             pose: pose.and_then(|k| names.get(k)).cloned(),
-            message: message.to_string(),
+            source: source.into(),
         }
     }
 }

@@ -17,10 +17,11 @@ const CAMERA_PLACES: usize = 48;
 pub(super) struct Figure {
     pub(super) layers: Vec<LayerShape>,
     /// Per pose of the space, the layers from back to front.
-    draw_orders: Vec<Vec<usize>>,
+    pub(super) draw_orders: Vec<Vec<usize>>,
     /// Per pose of the space, the one whose drawing it shows.
     originals: Vec<usize>,
-    texture_sharpness: f64,
+    /// How sharply textures follow the nearest pose.
+    pub(super) texture_sharpness: f64,
 }
 
 /// A character in one pose: the shapes of a frame, before it is drawn.
@@ -49,16 +50,6 @@ impl Figure {
             originals: spec.originals(),
             texture_sharpness: spec.texture.sharpness,
         }
-    }
-
-    /// How sharply textures follow the nearest pose.
-    pub(super) fn texture_sharpness(&self) -> f64 {
-        self.texture_sharpness
-    }
-
-    /// Per pose of the space, the layers from back to front.
-    pub(super) fn draw_orders(&self) -> &[Vec<usize>] {
-        &self.draw_orders
     }
 
     /// The shapes for weights that sum to 1.

@@ -156,15 +156,15 @@ pub struct LayerShape {
     mapping: Mapping,
     options: BlendOptions,
     blend: RigidBlend,
-    tie: Option<Tie>,
+    pub(super) tie: Option<Tie>,
 }
 
 /// Where a layer hangs on another one: a point of both, in the poses of the layer that hangs.
 #[derive(Debug, Clone)]
-struct Tie {
-    to: usize,
-    own: ShapePoint,
-    other: ShapePoint,
+pub(super) struct Tie {
+    pub(super) to: usize,
+    pub(super) own: ShapePoint,
+    pub(super) other: ShapePoint,
 }
 
 /// A layer in one frame.
@@ -222,11 +222,6 @@ impl LayerShape {
     #[must_use]
     pub fn options(&self) -> &BlendOptions {
         &self.options
-    }
-
-    /// The layer that it hangs on, its own point and the other layer's.
-    pub(super) fn tie_points(&self) -> Option<(usize, &ShapePoint, &ShapePoint)> {
-        self.tie.as_ref().map(|tie| (tie.to, &tie.own, &tie.other))
     }
 
     /// The layer that it hangs on.

@@ -39,6 +39,7 @@ const MOST_DAMPING: f64 = 1e12;
 
 /// How hard to search.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ReachOptions {
     /// Places looked at besides the poses' own, for each dimension of the space. Default: 96.
     pub places: usize,
@@ -67,7 +68,7 @@ impl Default for ReachOptions {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShapePoint {
     /// One a pose.
-    anchors: Vec<MeshPoint>,
+    pub(super) anchors: Vec<MeshPoint>,
 }
 
 impl ShapePoint {
@@ -91,11 +92,6 @@ impl ShapePoint {
         Self {
             anchors: vec![point; poses],
         }
-    }
-
-    /// What it is in each pose.
-    pub(super) fn anchors(&self) -> &[MeshPoint] {
-        &self.anchors
     }
 
     /// The point that is these in the poses.

@@ -60,6 +60,7 @@ pub struct CharacterSpec {
 
 /// What frames show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum CameraRule {
     /// All poses and the whole animation, as large as they fit.
     #[default]
@@ -87,6 +88,7 @@ pub struct SpaceSpec {
 
 /// Where poses lie in the pose space.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub enum Places {
     /// One place a pose, all of one dimension, no two at the same.
     Given(Vec<Vec<f64>>),
@@ -97,6 +99,7 @@ pub enum Places {
 
 /// Which weights, with the options of their own stage.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum WeightOptions {
     /// Biharmonic on a mesh of the plane (NWM 4.1).
     Biharmonic(BiharmonicOptions),
@@ -191,6 +194,7 @@ pub struct LayerSpec {
 
 /// What a layer is of a character.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum LayerRole {
     /// A layer that the artist made, or the largest of the parts that it fell into.
     #[default]
@@ -201,6 +205,7 @@ pub enum LayerRole {
 
 /// What becomes of holes that not all drawings of a layer have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum UnsharedHoles {
     /// The mesh covers them; in the drawings that have them the texture is open there, and in between it opens and closes.
     #[default]
@@ -221,6 +226,7 @@ pub struct PoseSpec {
 
 /// Where the shape of a pose comes from.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum PoseShape {
     /// A drawing of its own.
     Drawn(DrawnPose),
@@ -316,6 +322,7 @@ pub struct HandleMove {
 ///
 /// In every pose that has it, it is at the outer outline (onto which it is snapped), at the rim of a hole (the same, and these holes are one), or inside.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct LandmarkSpec {
     /// Its name.
     pub name: String,
@@ -325,6 +332,7 @@ pub struct LandmarkSpec {
 
 /// A line that is named on several poses.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct PathSpec {
     /// Its name.
     pub name: String,
@@ -401,6 +409,22 @@ impl LayerSpec {
             unshared_holes: UnsharedHoles::default(),
             role: LayerRole::default(),
         }
+    }
+}
+
+impl LandmarkSpec {
+    /// The landmark of this name, with a place or `None` for each pose of the layer.
+    #[must_use]
+    pub fn new(name: impl Into<String>, at: Vec<Option<Point>>) -> Self {
+        Self { name: name.into(), at }
+    }
+}
+
+impl PathSpec {
+    /// The line of this name, with its points or `None` for each pose of the layer.
+    #[must_use]
+    pub fn new(name: impl Into<String>, at: Vec<Option<Vec<Point>>>) -> Self {
+        Self { name: name.into(), at }
     }
 }
 

@@ -17,7 +17,7 @@ const AT_THE_END: f64 = 1e-9;
 /// Why an outline cannot be carried.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum CarryError {
+pub(crate) enum CarryError {
     /// The mesh has no triangle.
     #[error("there is no triangle to carry the outline")]
     NoTriangle,
@@ -31,7 +31,7 @@ pub enum CarryError {
 
 /// An outline on another embedding of its mesh, and which point of it was which.
 #[derive(Debug, Clone)]
-pub struct CarriedOutline {
+pub(crate) struct CarriedOutline {
     /// The carried outline.
     pub outline: Outline,
     rings: Vec<Parameters>,
@@ -49,7 +49,12 @@ impl CarriedOutline {
     ///
     /// # Errors
     /// [`CarryError`] if `to` is no embedding of the mesh, or flattens the outline.
-    pub fn new(topology: &Topology, from: &[Point], to: &[Point], outline: &Outline) -> Result<Self, CarryError> {
+    pub(crate) fn new(
+        topology: &Topology,
+        from: &[Point],
+        to: &[Point],
+        outline: &Outline,
+    ) -> Result<Self, CarryError> {
         let locator = PointLocator::new(topology.triangles(), from);
         let edges = mesh_edges(topology, from);
         let carry =
@@ -78,7 +83,7 @@ impl CarriedOutline {
 
     /// The parameter on the carried ring (0 is the outer one) of the point at parameter `t` of the ring it was.
     #[must_use]
-    pub fn parameter(&self, ring: usize, t: f64) -> f64 {
+    pub(crate) fn parameter(&self, ring: usize, t: f64) -> f64 {
         let t = wrapped(t);
         let Some(Parameters { before, after }) = self.rings.get(ring) else {
             return t;

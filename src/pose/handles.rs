@@ -144,6 +144,7 @@ pub enum HandleError {
 
 /// When a drag ends. Handles are met exactly whenever that is.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct DragOptions {
     /// A step that moves no vertex further than this, as a fraction of the pose's diagonal, is the last. Default: 1e-7, a
     /// ten-thousandth of a pixel of a drawing of a thousand.

@@ -10,7 +10,7 @@ mod pose_set;
 mod quality;
 mod texture_mesh;
 
-pub use carried::{CarriedOutline, CarryError};
+pub(crate) use carried::CarriedOutline;
 pub use distance::deformation_distances;
 pub use handles::{DragOptions, DragReport, HandleDeformation, HandleError, HandleScratch, Repair};
 pub use json::{MappingFileError, Polygons};

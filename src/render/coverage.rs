@@ -16,9 +16,7 @@ use crate::outline::{Outline, Ring};
 
 /// The covered area of each pixel of a grid.
 #[derive(Debug, Clone)]
-pub struct Coverage {
-    width: usize,
-    height: usize,
+pub(crate) struct Coverage {
     areas: Vec<f32>,
 }
 
@@ -26,7 +24,7 @@ impl Coverage {
     /// The coverage of a grid of `width` x `height` pixels by closed polygons in pixel coordinates: pixel (i, j) is the
     /// square from (i, j) to (i+1, j+1). Points must be finite.
     #[must_use]
-    pub fn of<'a>(polygons: impl IntoIterator<Item = &'a [Point]>, width: usize, height: usize) -> Self {
+    pub(crate) fn of<'a>(polygons: impl IntoIterator<Item = &'a [Point]>, width: usize, height: usize) -> Self {
         let mut rows = CoverageRows::new(width, 0..height);
         for polygon in polygons {
             edges(polygon).for_each(|[a, b]| rows.add_edge(a, b));
@@ -35,32 +33,20 @@ impl Coverage {
         for (row, areas) in areas.chunks_exact_mut(width.max(1)).enumerate() {
             rows.for_each_run(row, |columns, area| areas[columns].fill(area));
         }
-        Self { width, height, areas }
+        Self { areas }
     }
 
     /// The coverage of a grid by the inside of an outline, whose points `place` takes to pixels.
     #[must_use]
-    pub fn of_outline(outline: &Outline, place: impl Fn(Point) -> Point, width: usize, height: usize) -> Self {
+    pub(crate) fn of_outline(outline: &Outline, place: impl Fn(Point) -> Point, width: usize, height: usize) -> Self {
         let polygon = |ring: &Ring| -> Vec<Point> { ring.points().iter().map(|p| place(*p)).collect() };
         let polygons: Vec<Vec<Point>> = outline.rings().iter().map(polygon).collect();
         Self::of(polygons.iter().map(Vec::as_slice), width, height)
     }
 
-    /// Columns.
-    #[must_use]
-    pub fn width(&self) -> usize {
-        self.width
-    }
-
-    /// Rows.
-    #[must_use]
-    pub fn height(&self) -> usize {
-        self.height
-    }
-
     /// Row by row, the covered area of each pixel, in [0, 1].
     #[must_use]
-    pub fn areas(&self) -> &[f32] {
+    pub(crate) fn areas(&self) -> &[f32] {
         &self.areas
     }
 }

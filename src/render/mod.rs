@@ -4,15 +4,16 @@
 //! ([`painter`](Painter)), cut out by the blended full-resolution outline ([`Silhouette`]). Alphas are not
 //! cross-faded, so the edge stays crisp while the colours change: each pose's texture is opaque beyond its own
 //! edge ([`Texture`]), and the one edge of the frame is drawn with the exact area that it covers of each pixel
-//! ([`coverage`]).
+//! (`coverage.rs`).
 
 mod affine_map;
 mod band;
 mod camera;
 mod colour_blend;
-pub mod coverage;
+pub(crate) mod coverage;
 pub mod diagram;
 pub mod drawing;
+mod error;
 mod frame;
 mod level;
 mod nearest_seed;
@@ -20,10 +21,11 @@ mod nearest_texel;
 mod painter;
 pub mod puppet;
 mod puppet_texture;
-pub mod raster;
+pub(crate) mod raster;
 mod reached;
 mod sampler;
-pub mod shaded;
+#[cfg(feature = "scene")]
+pub(crate) mod shaded;
 mod silhouette;
 mod texture;
 
@@ -33,6 +35,7 @@ pub use drawing::{
     CarriedDrawing, CrossFade, Cubic, Fill, FillRule, Gradient, GradientKind, LineCap, LineJoin, Paint, Placement,
     PoseArt, Spread, Stop, Stroke, Subpath, VectorFrame, VectorGroup, VectorNode, VectorPicture, VectorShape,
 };
+pub use error::PictureError;
 pub use frame::Frame;
 pub use painter::{PaintOptions, Painter, PoseTexture, Sampling};
 pub use puppet::{Puppet, PuppetFrame, PuppetLayer, PuppetLayerFrame, PuppetPose, PuppetTexture};

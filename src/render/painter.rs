@@ -42,6 +42,7 @@ pub struct PoseTexture {
 
 /// How a painter paints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct PaintOptions {
     /// How colours are averaged. Default: [`ColourBlend::Plain`].
     pub blending: ColourBlend,

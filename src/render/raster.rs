@@ -18,7 +18,7 @@ const FARTHEST: f64 = (1 << 21) as f64;
 
 /// A run of samples in one row, covered by one triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Span {
+pub(crate) struct Span {
     /// Which triangle.
     pub triangle: usize,
     /// The row.
@@ -31,7 +31,7 @@ pub struct Span {
 
 /// Vertices placed on a grid of samples.
 #[derive(Debug, Clone)]
-pub struct PlacedVertices {
+pub(crate) struct PlacedVertices {
     /// In parts of a sample.
     places: Vec<[i64; 2]>,
 }
@@ -39,7 +39,7 @@ pub struct PlacedVertices {
 impl PlacedVertices {
     /// Places `positions`, in samples: sample (i, j) has its centre at (i + 1/2, j + 1/2).
     #[must_use]
-    pub fn new(positions: &[Point]) -> Self {
+    pub(crate) fn new(positions: &[Point]) -> Self {
         let place = |v: f64| (v.clamp(-FARTHEST, FARTHEST) * PARTS as f64).round() as i64;
         Self {
             places: positions.iter().map(|p| [place(p.x), place(p.y)]).collect(),
@@ -48,7 +48,7 @@ impl PlacedVertices {
 
     /// Where a triangle was placed, in samples. Every sample of its spans lies in it, exactly.
     #[must_use]
-    pub fn corners(&self, triangle: [usize; 3]) -> [Point; 3] {
+    pub(crate) fn corners(&self, triangle: [usize; 3]) -> [Point; 3] {
         triangle.map(|v| {
             let [x, y] = self.places[v];
             Point::new(x as f64, y as f64) / PARTS as f64
@@ -63,13 +63,13 @@ impl PlacedVertices {
 
     /// The area that `triangles` cover, in samples, beyond the grid's border, too.
     #[must_use]
-    pub fn covered_area(&self, triangles: &[[usize; 3]]) -> f64 {
+    pub(crate) fn covered_area(&self, triangles: &[[usize; 3]]) -> f64 {
         let doubled: f64 = triangles.iter().map(|t| self.doubled_area(*t).max(0) as f64).sum();
         0.5 * doubled / (PARTS * PARTS) as f64
     }
 
     /// Calls `draw` for each span that `triangles` cover of `rows` of a grid `width` samples wide, triangle by triangle.
-    pub fn for_each_span(
+    pub(crate) fn for_each_span(
         &self,
         triangles: &[[usize; 3]],
         width: usize,

@@ -38,5 +38,5 @@ pub use shape::{
     ShapeProblem, ShapeScene, SheetSettings, SkeletonSettings, SkinWeights, SubdivisionSettings, Subject,
     SurfacePoints,
 };
-pub use shape_model::{ShapeForm, ShapeModel, ShapeModelError, ShapeSpace, ShapeTake};
+pub use shape_model::{ShapeForm, ShapeModel, ShapeModelError, ShapeNote, ShapeNoteKind, ShapeSpace, ShapeTake};
 pub use workbench::{DrawingFiles, Workbench};

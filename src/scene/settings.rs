@@ -84,6 +84,7 @@ pub enum Holes {
 
 /// How drawings become outlines.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct InputSettings {
     /// Whether holes count.
     pub holes: Holes,
@@ -97,6 +98,7 @@ pub struct InputSettings {
 
 /// How a drawing is read.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ReadingSettings {
     /// How the figure is told from its sheet.
     pub figure: FigureRule,
@@ -167,6 +169,7 @@ pub enum Layout {
 
 /// How weights fall off over the pose space.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct PoseSpaceSettings {
     /// Which weights.
     pub provider: Provider,

@@ -49,6 +49,7 @@ pub enum SubdividedPositions {
 
 /// What [`LoopSubdivision`] can be told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SubdivisionOptions {
     /// How many times every triangle is divided into four. Default: 1.
     pub steps: usize,

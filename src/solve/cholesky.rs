@@ -26,7 +26,7 @@ const PARTIAL_SUMS: usize = 4;
 
 /// The factor of a symmetric positive definite matrix.
 #[derive(Debug, Clone)]
-pub struct SparseCholesky {
+pub(crate) struct SparseCholesky {
     size: usize,
     /// Unknown eliminated at each step.
     order: Vec<usize>,
@@ -43,7 +43,7 @@ impl SparseCholesky {
     ///
     /// # Errors
     /// [`SolveError`] if it is not square, not finite or not positive definite.
-    pub fn new(matrix: &SparseMatrix) -> Result<Self, SolveError> {
+    pub(crate) fn new(matrix: &SparseMatrix) -> Result<Self, SolveError> {
         let size = matrix.column_count();
         if matrix.row_count() != size {
             return Err(SolveError::WrongSize {
@@ -131,19 +131,19 @@ impl SparseCholesky {
 
     /// Unknowns.
     #[must_use]
-    pub fn size(&self) -> usize {
+    pub(crate) fn size(&self) -> usize {
         self.size
     }
 
     /// Entries of the factor.
     #[must_use]
-    pub fn factor_entry_count(&self) -> usize {
+    pub(crate) fn factor_entry_count(&self) -> usize {
         self.values.len() + self.size
     }
 
     /// The unknown that is eliminated at each step. [`Self::solve_in_order`] takes and gives entries in this order.
     #[must_use]
-    pub fn order(&self) -> &[usize] {
+    pub(crate) fn order(&self) -> &[usize] {
         &self.order
     }
 
@@ -152,7 +152,7 @@ impl SparseCholesky {
     ///
     /// # Errors
     /// [`SolveError::WrongSize`] if there is not one entry for each unknown.
-    pub fn solve<const K: usize>(
+    pub(crate) fn solve<const K: usize>(
         &self,
         vectors: &mut [[f64; K]],
         buffer: &mut Vec<[f64; K]>,
@@ -177,7 +177,7 @@ impl SparseCholesky {
     ///
     /// # Errors
     /// [`SolveError::WrongSize`] if there is not one entry for each unknown.
-    pub fn solve_in_order<const K: usize>(&self, vectors: &mut [[f64; K]]) -> Result<(), SolveError> {
+    pub(crate) fn solve_in_order<const K: usize>(&self, vectors: &mut [[f64; K]]) -> Result<(), SolveError> {
         if vectors.len() != self.size {
             return Err(SolveError::WrongSize {
                 expected: self.size,

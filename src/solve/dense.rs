@@ -25,7 +25,7 @@ const TOGETHER: usize = 8;
 
 /// A dense matrix, for systems of tens of unknowns.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DenseMatrix {
+pub(crate) struct DenseMatrix {
     rows: usize,
     columns: usize,
     /// Row by row.
@@ -35,7 +35,7 @@ pub struct DenseMatrix {
 impl DenseMatrix {
     /// The matrix with `entry(row, column)` at each place, asked for row by row.
     #[must_use]
-    pub fn from_fn(rows: usize, columns: usize, mut entry: impl FnMut(usize, usize) -> f64) -> Self {
+    pub(crate) fn from_fn(rows: usize, columns: usize, mut entry: impl FnMut(usize, usize) -> f64) -> Self {
         let mut entries = Vec::with_capacity(rows * columns);
         for row in 0..rows {
             entries.extend((0..columns).map(|column| entry(row, column)));
@@ -45,13 +45,13 @@ impl DenseMatrix {
 
     /// Rows.
     #[must_use]
-    pub fn row_count(&self) -> usize {
+    pub(crate) fn row_count(&self) -> usize {
         self.rows
     }
 
     /// Columns.
     #[must_use]
-    pub fn column_count(&self) -> usize {
+    pub(crate) fn column_count(&self) -> usize {
         self.columns
     }
 
@@ -60,7 +60,7 @@ impl DenseMatrix {
     /// # Panics
     /// If the place is outside the matrix, like indexing a slice.
     #[must_use]
-    pub fn at(&self, row: usize, column: usize) -> f64 {
+    pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
         assert!(column < self.columns, "column {column} of {}", self.columns);
         self.entries[row * self.columns + column]
     }
@@ -70,7 +70,7 @@ impl DenseMatrix {
     /// # Panics
     /// If there is no such row, like indexing a slice.
     #[must_use]
-    pub fn row(&self, row: usize) -> &[f64] {
+    pub(crate) fn row(&self, row: usize) -> &[f64] {
         &self.entries[row * self.columns..(row + 1) * self.columns]
     }
 
@@ -78,7 +78,7 @@ impl DenseMatrix {
     ///
     /// # Panics
     /// If the place is outside the matrix, like indexing a slice.
-    pub fn set(&mut self, row: usize, column: usize, entry: f64) {
+    pub(crate) fn set(&mut self, row: usize, column: usize, entry: f64) {
         self.row_mut(row)[column] = entry;
     }
 
@@ -87,7 +87,7 @@ impl DenseMatrix {
     /// # Panics
     /// If there is no such row, like indexing a slice.
     #[must_use]
-    pub fn row_mut(&mut self, row: usize) -> &mut [f64] {
+    pub(crate) fn row_mut(&mut self, row: usize) -> &mut [f64] {
         &mut self.entries[row * self.columns..(row + 1) * self.columns]
     }
 
@@ -95,7 +95,7 @@ impl DenseMatrix {
     ///
     /// # Errors
     /// [`SolveError::WrongSize`] if the inner sizes differ.
-    pub fn times(&self, other: &Self) -> Result<Self, SolveError> {
+    pub(crate) fn times(&self, other: &Self) -> Result<Self, SolveError> {
         same_size(self.columns, other.rows)?;
         let mut product = Self::zeros(self.rows, other.columns);
         for row in 0..self.rows {
@@ -111,7 +111,7 @@ impl DenseMatrix {
     ///
     /// # Errors
     /// [`SolveError::WrongSize`] if the sizes differ.
-    pub fn plus(&self, factor: f64, other: &Self) -> Result<Self, SolveError> {
+    pub(crate) fn plus(&self, factor: f64, other: &Self) -> Result<Self, SolveError> {
         same_size(self.rows, other.rows)?;
         same_size(self.columns, other.columns)?;
         let mut sum = self.clone();
@@ -124,7 +124,7 @@ impl DenseMatrix {
     ///
     /// # Errors
     /// [`SolveError`] if sizes differ or an entry is not finite.
-    pub fn least_squares(&self, right: &Self, relative_cutoff: f64) -> Result<Self, SolveError> {
+    pub(crate) fn least_squares(&self, right: &Self, relative_cutoff: f64) -> Result<Self, SolveError> {
         same_size(self.rows, right.rows)?;
         self.finite()?;
         right.finite()?;
@@ -149,7 +149,7 @@ impl DenseMatrix {
     ///
     /// # Errors
     /// [`SolveError`] if an entry is not finite.
-    pub fn row_space(&self, relative_cutoff: f64) -> Result<Self, SolveError> {
+    pub(crate) fn row_space(&self, relative_cutoff: f64) -> Result<Self, SolveError> {
         self.finite()?;
         let parts = SingularParts::of(self);
         let kept: Vec<(&[f64], f64)> = parts
@@ -332,7 +332,7 @@ fn scalar_products(p: &[f64], q: &[f64]) -> [f64; 3] {
 
 /// A square system, factored once with partial pivoting.
 #[derive(Debug, Clone)]
-pub struct SolvedDense {
+pub(crate) struct SolvedDense {
     /// `L` below the diagonal, where it is 1; `U` from there on.
     factor: DenseMatrix,
     /// Which row was exchanged with row k, in step k.
@@ -344,7 +344,7 @@ impl SolvedDense {
     ///
     /// # Errors
     /// [`SolveError`] if it is not square, not finite or singular.
-    pub fn new(matrix: &DenseMatrix) -> Result<Self, SolveError> {
+    pub(crate) fn new(matrix: &DenseMatrix) -> Result<Self, SolveError> {
         same_size(matrix.rows, matrix.columns)?;
         matrix.finite()?;
         let mut factor = matrix.clone();
@@ -361,7 +361,7 @@ impl SolvedDense {
     ///
     /// # Errors
     /// [`SolveError`] if the sizes differ.
-    pub fn solve(&self, right: &DenseMatrix) -> Result<DenseMatrix, SolveError> {
+    pub(crate) fn solve(&self, right: &DenseMatrix) -> Result<DenseMatrix, SolveError> {
         let size = self.factor.rows;
         same_size(size, right.rows)?;
         let mut columns = vec![[0.0; TOGETHER]; size];

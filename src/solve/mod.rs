@@ -7,9 +7,9 @@ mod cholesky;
 mod dense;
 mod sparse;
 
-pub use cholesky::SparseCholesky;
-pub use dense::{DenseMatrix, SolvedDense};
-pub use sparse::{Entry, SparseMatrix, Triplets};
+pub(crate) use cholesky::SparseCholesky;
+pub(crate) use dense::{DenseMatrix, SolvedDense};
+pub(crate) use sparse::{Entry, SparseMatrix, Triplets};
 
 /// Why a linear system has no usable solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -3,11 +3,11 @@
 use sprs::{CsMat, TriMat};
 
 /// An entry of a matrix: row, column, value.
-pub type Entry = (usize, usize, f64);
+pub(crate) type Entry = (usize, usize, f64);
 
 /// A list of matrix entries; entries at the same place add up.
 #[derive(Debug)]
-pub struct Triplets {
+pub(crate) struct Triplets {
     rows: usize,
     columns: usize,
     entries: TriMat<f64>,
@@ -16,7 +16,7 @@ pub struct Triplets {
 impl Triplets {
     /// No entries yet, of a matrix of `rows` x `columns`.
     #[must_use]
-    pub fn new(rows: usize, columns: usize) -> Self {
+    pub(crate) fn new(rows: usize, columns: usize) -> Self {
         Self {
             rows,
             columns,
@@ -25,7 +25,7 @@ impl Triplets {
     }
 
     /// Adds `value` at `(row, column)`. Places outside the matrix are ignored: an eliminated unknown has no place.
-    pub fn add(&mut self, row: usize, column: usize, value: f64) {
+    pub(crate) fn add(&mut self, row: usize, column: usize, value: f64) {
         if row < self.rows && column < self.columns {
             self.entries.add_triplet(row, column, value);
         }
@@ -33,7 +33,7 @@ impl Triplets {
 
     /// The matrix.
     #[must_use]
-    pub fn build(&self) -> SparseMatrix {
+    pub(crate) fn build(&self) -> SparseMatrix {
         SparseMatrix {
             columns: self.entries.to_csc(),
         }
@@ -42,32 +42,33 @@ impl Triplets {
 
 /// A sparse matrix, stored by columns with sorted rows.
 #[derive(Debug, Clone)]
-pub struct SparseMatrix {
+pub(crate) struct SparseMatrix {
     columns: CsMat<f64>,
 }
 
 impl SparseMatrix {
     /// Rows.
     #[must_use]
-    pub fn row_count(&self) -> usize {
+    pub(crate) fn row_count(&self) -> usize {
         self.columns.rows()
     }
 
     /// Columns.
     #[must_use]
-    pub fn column_count(&self) -> usize {
+    pub(crate) fn column_count(&self) -> usize {
         self.columns.cols()
     }
 
     /// Stored entries.
+    #[cfg(test)]
     #[must_use]
-    pub fn entry_count(&self) -> usize {
+    pub(crate) fn entry_count(&self) -> usize {
         self.columns.nnz()
     }
 
     /// The normal matrix `M^T M` (#columns x #columns) of the least-squares problem with this matrix.
     #[must_use]
-    pub fn normal(&self) -> Self {
+    pub(crate) fn normal(&self) -> Self {
         let transposed = self.columns.transpose_view().to_csc();
         Self {
             columns: (&transposed * &self.columns).to_csc(),
@@ -75,7 +76,7 @@ impl SparseMatrix {
     }
 
     /// The entries `(row, column, value)`, by column and then row.
-    pub fn entries(&self) -> impl Iterator<Item = Entry> + '_ {
+    pub(crate) fn entries(&self) -> impl Iterator<Item = Entry> + '_ {
         self.columns.outer_iterator().enumerate().flat_map(|(column, entries)| {
             entries
                 .iter()
@@ -85,8 +86,9 @@ impl SparseMatrix {
     }
 
     /// The product with a dense vector; `None` if its length is not #columns.
+    #[cfg(test)]
     #[must_use]
-    pub fn multiply(&self, vector: &[f64]) -> Option<Vec<f64>> {
+    pub(crate) fn multiply(&self, vector: &[f64]) -> Option<Vec<f64>> {
         if vector.len() != self.column_count() {
             return None;
         }

@@ -66,6 +66,7 @@ pub enum Range {
 
 /// What [`BiharmonicWeights`] can be told.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct BiharmonicOptions {
     /// How strongly flat is preferred to straight. Default: 1e-3; the weights then level out about one diagonal away from
     /// the poses. Smaller values extrapolate further.

@@ -57,6 +57,7 @@ pub struct PseudoPose {
 
 /// What [`RbfWeights`] can be told.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct RbfOptions {
     /// Default: [`Radial::BSpline`].
     pub radial: Radial,

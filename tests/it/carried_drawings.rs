@@ -416,10 +416,8 @@ fn a_drawing_in_its_own_pose_looks_as_its_file() {
 
 /// Compares with what resvg makes of the file. The mesh is a box around the drawing.
 fn looks_as_its_file(name: &str, bytes: &[u8]) {
-    let options = SvgOptions {
-        pixels_per_unit: Some(0.5),
-        ..SvgOptions::default()
-    };
+    let mut options = SvgOptions::default();
+    options.pixels_per_unit = Some(0.5);
     let Drawing { art, picture, .. } = read_svg(bytes, &options).expect("a drawing");
     let corners = [[-1.0, -1.0], [1200.0, -1.0], [1200.0, 700.0], [-1.0, 700.0]];
     let mapping = mapping(&[corners, SQUARE]);

@@ -57,10 +57,8 @@ fn animated_png() -> Vec<u8> {
 fn read(bytes: &[u8]) {
     let cell = PictureChoice::Cell { at: [1, 0], of: [2, 1] };
     for picture in [PictureChoice::Only, PictureChoice::Frame(1), cell] {
-        let options = BitmapOptions {
-            picture,
-            ..BitmapOptions::default()
-        };
+        let mut options = BitmapOptions::default();
+        options.picture = picture;
         if let Ok(drawing) = read_bitmap(bytes, &options) {
             assert!(drawing.outline.area() > 0.0);
         }

@@ -75,10 +75,9 @@ fn layer(poses: &[String], landmarks: &[(&str, &[Option<Point>])]) -> LayerSpec 
     let names = ["a", "b", "c"];
     let poses = names.iter().zip(poses).map(|(name, text)| drawn(name, text));
     let mut layer = LayerSpec::new("plate", poses.collect());
-    layer.landmarks.extend(landmarks.iter().map(|(name, at)| LandmarkSpec {
-        name: (*name).to_owned(),
-        at: at.to_vec(),
-    }));
+    layer
+        .landmarks
+        .extend(landmarks.iter().map(|(name, at)| LandmarkSpec::new(*name, at.to_vec())));
     layer
 }
 

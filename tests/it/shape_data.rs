@@ -79,10 +79,8 @@ impl Scene {
                 at: at.clone(),
             })
             .collect();
-        let options = RbfOptions {
-            pseudo_poses: pseudo_poses.to_vec(),
-            ..RbfOptions::default()
-        };
+        let mut options = RbfOptions::default();
+        options.pseudo_poses = pseudo_poses.to_vec();
         Shape::new(self.topology.clone(), examples, &options).expect("a shape")
     }
 

@@ -12,7 +12,7 @@ use super::job::Job;
 pub(super) fn glb(job: Job<'_>) -> anyhow::Result<()> {
     let file = PendingFile::create(job.output)?;
     let take = Take::new(&job)?;
-    let (bytes, report) = gltf_bytes(&take.motion(&job)).map_err(anyhow::Error::msg)?;
+    let (bytes, report) = gltf_bytes(&take.motion(&job))?;
     file.fill(&bytes)?;
     take.done(&job, &report)
 }

@@ -79,13 +79,12 @@ impl Take {
                 }
             }
         }
+        let mut options = KeyOptions::default();
+        options.max_error_px = job.max_error;
         Ok(Self {
             character,
             keyed,
-            options: KeyOptions {
-                max_error_px: job.max_error,
-                ..KeyOptions::default()
-            },
+            options,
             progress,
         })
     }

@@ -283,7 +283,7 @@ impl Job<'_> {
         }
         let take = model.take(self.scene, times, &places, texture)?;
         let motion = take.motion(self.arguments.max_error);
-        let (bytes, report) = shape_gltf_bytes(&motion).map_err(anyhow::Error::msg)?;
+        let (bytes, report) = shape_gltf_bytes(&motion)?;
         file.fill(&bytes)?;
         self.verbosity.note(&format!(
             "{} keys for {} frames; vertices are at most {:.1e} of the forms' diagonal from where they belong",

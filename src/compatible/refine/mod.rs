@@ -57,15 +57,6 @@ impl Default for RefineOptions {
     }
 }
 
-impl RefineOptions {
-    /// The options with another edge length.
-    #[must_use]
-    pub fn with_edge_length(mut self, edge_length: f64) -> Self {
-        self.edge_length = edge_length;
-        self
-    }
-}
-
 /// What a refinement reached.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]

@@ -23,7 +23,14 @@ fn a_landmark_keeps_its_place_and_the_worst_angle_is_reported() {
     let polygons = vec![star(&[1.0; 8]), star(&[1.0, 0.7, 1.0, 0.7, 1.0, 0.7, 1.0, 0.7])];
     let landmark = vec![Point::new(0.1, 0.1), Point::new(-0.2, 0.1)];
     let (mesh, _) = triangulate(&polygons, std::slice::from_ref(&landmark)).expect("triangulated");
-    let (refined, report) = refine(&mesh, &RefineOptions::default().with_edge_length(0.1)).expect("refined");
+    let (refined, report) = refine(
+        &mesh,
+        &RefineOptions {
+            edge_length: 0.1,
+            ..RefineOptions::default()
+        },
+    )
+    .expect("refined");
     let vertex = refined.landmarks[0];
     assert_eq!(
         [refined.positions[0][vertex], refined.positions[1][vertex]],
@@ -40,10 +47,22 @@ fn a_landmark_keeps_its_place_and_the_worst_angle_is_reported() {
 fn an_edge_length_out_of_range_is_refused() {
     let (mesh, _) = triangulate(&[star(&[1.0; 5])], &[]).expect("triangulated");
     for given in [0.0, -1.0, 1e-9] {
-        let refused = refine(&mesh, &RefineOptions::default().with_edge_length(given));
+        let refused = refine(
+            &mesh,
+            &RefineOptions {
+                edge_length: given,
+                ..RefineOptions::default()
+            },
+        );
         assert_eq!(refused, Err(RefineError::BadEdgeLength { given }));
     }
-    let refused = refine(&mesh, &RefineOptions::default().with_edge_length(f64::NAN));
+    let refused = refine(
+        &mesh,
+        &RefineOptions {
+            edge_length: f64::NAN,
+            ..RefineOptions::default()
+        },
+    );
     assert!(matches!(refused, Err(RefineError::BadEdgeLength { .. })));
 }
 
@@ -55,7 +74,7 @@ proptest! {
         edge_length in 0.1..0.4f64,
     ) {
         let (mesh, _) = triangulate(&polygons, &[]).expect("triangulated");
-        let (refined, _) = refine(&mesh, &RefineOptions::default().with_edge_length(edge_length)).expect("refined");
+        let (refined, _) = refine(&mesh, &RefineOptions { edge_length, ..RefineOptions::default() }).expect("refined");
         let holes = polygons[0].holes().len() as i64;
         prop_assert_eq!(refined.topology.euler_characteristic() as i64, 1 - holes);
         for (pose, positions) in refined.positions.iter().enumerate() {
@@ -79,7 +98,7 @@ proptest! {
     ) {
         let polygons: Vec<Outline> = radii.iter().map(|radii| star(radii)).collect();
         let (mesh, _) = triangulate(&polygons, &[]).expect("triangulated");
-        let (refined, report) = refine(&mesh, &RefineOptions::default().with_edge_length(edge_length)).expect("refined");
+        let (refined, report) = refine(&mesh, &RefineOptions { edge_length, ..RefineOptions::default() }).expect("refined");
         prop_assert_eq!(refined.topology.euler_characteristic(), 1);
         prop_assert_eq!(refined.topology.vertex_count(), mesh.topology.vertex_count() + report.splits);
         for (pose, positions) in refined.positions.iter().enumerate() {

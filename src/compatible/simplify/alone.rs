@@ -22,7 +22,7 @@ const THIN_SHAPE: f64 = 16.0;
 /// Outlines simplified each alone: what of a simplification needs no correspondence, so that it can be made while that is looked
 /// for.
 #[derive(Debug, Clone, Default)]
-pub struct SimplifiedAlone {
+pub(crate) struct SimplifiedAlone {
     /// One a pose; none where a landmark's place is not known.
     pub(super) poses: Vec<Option<Arc<PoseAlone>>>,
     pub(super) tolerance: f64,
@@ -34,7 +34,7 @@ impl SimplifiedAlone {
     ///
     /// # Errors
     /// [`SimplifyError::BadTolerance`].
-    pub fn new(
+    pub(crate) fn new(
         outlines: &[Outline],
         landmarks: &[Vec<Option<RingPoint>>],
         options: &SimplifyOptions,

@@ -46,7 +46,7 @@ use crate::matching::Correspondence;
 use crate::math::{Point, point};
 use crate::outline::{Outline, OutlineError, Ring, RingError};
 use alone::PoseAlone;
-pub use alone::SimplifiedAlone;
+pub(crate) use alone::SimplifiedAlone;
 use collapse::Collapser;
 use drift::Drift;
 use original::PoseOriginal;
@@ -83,20 +83,6 @@ impl Default for SimplifyOptions {
 }
 
 impl SimplifyOptions {
-    /// The options with another tolerance.
-    #[must_use]
-    pub fn with_tolerance(mut self, tolerance: f64) -> Self {
-        self.tolerance = tolerance;
-        self
-    }
-
-    /// The options with vertices held to corresponding places.
-    #[must_use]
-    pub fn with_drift(mut self, drift: f64) -> Self {
-        self.drift = Some(drift);
-        self
-    }
-
     fn check(&self) -> Result<(), SimplifyError> {
         // Written so that NaN fails too.
         if self.tolerance > 0.0 && self.tolerance.is_finite() {
@@ -288,7 +274,7 @@ impl Simplification {
     ///
     /// # Errors
     /// As [`simplify`].
-    pub fn with(
+    pub(crate) fn with(
         outlines: &[Outline],
         correspondences: &[Correspondence],
         landmarks: &[Vec<RingPoint>],
@@ -331,7 +317,7 @@ impl Simplification {
 
     /// Its outlines, simplified alone.
     #[must_use]
-    pub fn alone(&self) -> SimplifiedAlone {
+    pub(crate) fn alone(&self) -> SimplifiedAlone {
         SimplifiedAlone {
             poses: self.poses.iter().cloned().map(Some).collect(),
             tolerance: self.tolerance,

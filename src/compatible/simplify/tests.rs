@@ -82,7 +82,10 @@ fn a_landmark_survives_where_it_would_be_collapsed() {
 #[test]
 fn bad_input_is_refused() {
     let outlines = vec![wavy(60, 3, 0.1, 0.0)];
-    let options = SimplifyOptions::default().with_tolerance(f64::NAN);
+    let options = SimplifyOptions {
+        tolerance: f64::NAN,
+        ..SimplifyOptions::default()
+    };
     let refused = simplify(&outlines, &[Correspondence::identity(1, 8)], &[], &options);
     assert!(matches!(refused, Err(SimplifyError::BadTolerance(_))));
     let refused = simplify(&outlines, &[], &[], &SimplifyOptions::default());
@@ -105,7 +108,7 @@ proptest! {
     ) {
         let outlines: Vec<Outline> = shapes.iter().map(|&(n, waves, height, phase)| wavy(n, waves, height, phase)).collect();
         let identity = Correspondence::identity(outlines.len(), 64);
-        let options = SimplifyOptions::default().with_tolerance(tolerance);
+        let options = SimplifyOptions { tolerance, ..SimplifyOptions::default() };
         // `Outline::new` inside has already proven each polygon simple.
         let simplified = simplify(&outlines, &[identity], &[], &options).expect("simplified");
         let count = simplified.report.vertices;
@@ -145,7 +148,10 @@ fn prove(outlines: &[Outline], landmarks: &[f64], tolerance: f64) -> Result<(), 
     let landmarks = landmarks.iter().enumerate();
     let landmarks: Vec<RingPoint> = landmarks.map(|(k, &t)| on_ring(k % correspondences.len(), t)).collect();
     let pinned: Vec<Vec<RingPoint>> = landmarks.iter().map(|&at| vec![at; outlines.len()]).collect();
-    let options = SimplifyOptions::default().with_tolerance(tolerance);
+    let options = SimplifyOptions {
+        tolerance,
+        ..SimplifyOptions::default()
+    };
     // `Outline::new` inside has already proven each polygon simple.
     let simplified = simplify(outlines, &correspondences, &pinned, &options)
         .map_err(|error| TestCaseError::fail(error.to_string()))?;
@@ -220,7 +226,10 @@ proptest! {
 fn the_reported_deviation_is_that_of_the_farthest_point() {
     let outlines = [wavy(200, 5, 0.2, 0.0), wavy(160, 7, 0.1, 1.0)];
     let correspondence = Correspondence::identity(2, 64);
-    let options = SimplifyOptions::default().with_tolerance(0.03);
+    let options = SimplifyOptions {
+        tolerance: 0.03,
+        ..SimplifyOptions::default()
+    };
     let simplified = simplify(&outlines, &[correspondence], &[], &options).expect("simplified");
     for ((polygon, outline), reported) in simplified
         .polygons
@@ -289,7 +298,10 @@ fn what_has_not_changed_is_taken_over_and_what_has_is_not() {
     let mut others = outlines.clone();
     others[2] = wavy(200, 5, 0.3, 2.0);
     for (outlines, second, tolerance) in [(&outlines, 0.53, 0.02), (&others, 0.5, 0.02), (&outlines, 0.5, 0.01)] {
-        let options = SimplifyOptions::default().with_tolerance(tolerance);
+        let options = SimplifyOptions {
+            tolerance,
+            ..SimplifyOptions::default()
+        };
         let anew = simplify(outlines, &matching, &landmarks(second), &options).expect("simplified");
         // Where one pose's landmark is not known yet, that pose is left for later.
         let known = [

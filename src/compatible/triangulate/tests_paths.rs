@@ -32,7 +32,14 @@ const FREE: [PathEnd; 2] = [PathEnd::Inside; 2];
 /// Proves mesh and chains, bare and refined; each chain keeps the given points.
 fn prove(polygons: &[Outline], features: &Features) -> TriangulateReport {
     let (mesh, report) = triangulate_features(polygons, features, Effort::Full).expect("triangulated");
-    let (refined, _) = refine(&mesh, &RefineOptions::default().with_edge_length(0.1)).expect("refined");
+    let (refined, _) = refine(
+        &mesh,
+        &RefineOptions {
+            edge_length: 0.1,
+            ..RefineOptions::default()
+        },
+    )
+    .expect("refined");
     for mesh in [&mesh, &refined] {
         for positions in &mesh.positions {
             check_embedding(&mesh.topology, positions, &mesh.rings).expect("an embedding");

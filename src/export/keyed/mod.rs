@@ -56,6 +56,7 @@ impl SampleTiming {
 
 /// How closely keys follow the samples.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct KeyOptions {
     /// How far a control point may be from where it belongs, at any sample, in pixels. Default: 0.25, which no eye sees.
     pub max_error_px: f64,
@@ -81,8 +82,27 @@ pub struct KeyReport {
     pub worst_px: f64,
     /// The largest difference of a colour or opacity, of 255.
     pub worst_step: f64,
-    /// What the format cannot hold and how it is drawn instead, a sentence each.
-    pub approximations: Vec<String>,
+    /// What the format cannot hold, each once.
+    pub approximations: Vec<Approximation>,
+}
+
+/// What a format cannot hold and how it is drawn instead; shown, it is a sentence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Approximation {
+    /// A gradient that repeats or is reflected ends in its last colour.
+    RepeatedGradient,
+    /// An elliptic gradient is round, with the same area.
+    EllipticGradient,
+}
+
+impl std::fmt::Display for Approximation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::RepeatedGradient => "Lottie has no repeated gradients; they end in their last colour",
+            Self::EllipticGradient => "Lottie has no elliptic gradients; they are drawn round, with the same area",
+        })
+    }
 }
 
 /// Why frames are not an animation.

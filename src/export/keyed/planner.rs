@@ -1,6 +1,6 @@
 //! Which samples become keys.
 
-use super::{KeyOptions, KeyReport, SampleTiming};
+use super::{Approximation, KeyOptions, KeyReport, SampleTiming};
 use crate::export::place_keys;
 use crate::math::Point;
 
@@ -49,7 +49,7 @@ impl<'a> Planner<'a> {
     }
 
     /// Notes what the format cannot hold, once.
-    pub(in crate::export) fn approximated(&mut self, what: String) {
+    pub(in crate::export) fn approximated(&mut self, what: Approximation) {
         if !self.report.approximations.contains(&what) {
             self.report.approximations.push(what);
         }

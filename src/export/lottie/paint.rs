@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::LottieWriter;
 use super::property::{pair, rounded};
-use crate::export::keyed::{GradientTrack, PaintTrack, StrokeTrack, settled};
+use crate::export::keyed::{Approximation, GradientTrack, PaintTrack, StrokeTrack, settled};
 use crate::export::svg::linear_ends;
 use crate::math::Point;
 use crate::math::point::cross;
@@ -90,8 +90,7 @@ impl LottieWriter<'_> {
 
     fn gradient(&mut self, kind: &str, gradient: &GradientTrack, seen: &[bool]) -> Map<String, Value> {
         if gradient.spread != Spread::Pad {
-            let what = "Lottie has no repeated gradients; they end in their last colour";
-            self.planner.approximated(what.to_owned());
+            self.planner.approximated(Approximation::RepeatedGradient);
         }
         let is_round = |placement: &Placement| {
             let size = placement.along_x.norm().max(placement.along_y.norm());
@@ -100,8 +99,7 @@ impl LottieWriter<'_> {
             difference <= ROUND * size && lean <= ROUND * size * size
         };
         if gradient.is_radial && !gradient.placement.iter().all(is_round) {
-            let what = "Lottie has no elliptic gradients; they are drawn round, with the same area";
-            self.planner.approximated(what.to_owned());
+            self.planner.approximated(Approximation::EllipticGradient);
         }
         let ends: Vec<Vec<Point>> = gradient
             .placement

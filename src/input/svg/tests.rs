@@ -1,6 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::input::HoleRule;
 use crate::outline::OutlineError;
 
 fn svg(body: &str) -> String {

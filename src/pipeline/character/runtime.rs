@@ -9,6 +9,7 @@ use crate::math::{Point, point};
 use crate::pipeline::LayerShape;
 use crate::pose::PoseSet;
 use crate::render::puppet::{PuppetLayer, PuppetTexture};
+use std::error::Error;
 
 /// Samples of the weights along a side of the plane.
 const GRID: usize = 65;
@@ -19,8 +20,8 @@ impl Character {
     /// Everything that a player needs. `animation` is the one that is played. `encode` makes a PNG file of a texture.
     ///
     /// # Errors
-    /// [`PipelineError`] if the animation leaves the pose space, or what `encode` says.
-    pub fn runtime_file<E: std::fmt::Display>(
+    /// [`PipelineError`] if the animation leaves the pose space, or with what `encode` says as its source.
+    pub fn runtime_file<E: Into<Box<dyn Error + Send + Sync>>>(
         &self,
         animation: &Animation,
         encode: impl Fn(&PuppetTexture) -> Result<Vec<u8>, E>,
@@ -28,7 +29,7 @@ impl Character {
         let puppet = self.puppet();
         let named = self.names.iter().zip(&self.places);
         let poses = named
-            .zip(self.figure.draw_orders())
+            .zip(&self.figure.draw_orders)
             .map(|((name, at), order)| RuntimePose {
                 name: name.clone(),
                 at: at.clone(),
@@ -37,14 +38,15 @@ impl Character {
         let layers = self.figure.layers.iter().zip(&puppet.layers);
         Ok(RuntimeFile {
             size: puppet.size.map(|side| side as u32),
-            texture_sharpness: self.figure.texture_sharpness(),
+            texture_sharpness: self.figure.texture_sharpness,
             poses: poses.collect(),
             field: self.field()?,
             animation: self.played(animation)?,
             layers: layers
                 .map(|(shape, layer)| {
-                    runtime_layer(shape, layer, &encode).map_err(|problem| {
-                        PipelineError::stage(&[], None, format!("layer '{}': {problem}", layer.name))
+                    runtime_layer(shape, layer, &encode).map_err(|source| PipelineError::Layer {
+                        layer: layer.name.clone(),
+                        source: Box::new(source),
                     })
                 })
                 .collect::<Result<_, _>>()?,
@@ -97,11 +99,11 @@ impl Character {
     }
 }
 
-fn runtime_layer<E: std::fmt::Display>(
+fn runtime_layer<E: Into<Box<dyn Error + Send + Sync>>>(
     shape: &LayerShape,
     layer: &PuppetLayer,
     encode: impl Fn(&PuppetTexture) -> Result<Vec<u8>, E>,
-) -> Result<RuntimeLayer, String> {
+) -> Result<RuntimeLayer, PipelineError> {
     let poses = layer
         .poses
         .iter()
@@ -111,7 +113,7 @@ fn runtime_layer<E: std::fmt::Display>(
         let size = Point::new(texture.width as f64, texture.height as f64);
         Ok(RuntimeTexture {
             name: texture.name.clone(),
-            png: encode(texture).map_err(|error| error.to_string())?,
+            png: encode(texture).map_err(|error| PipelineError::stage(&[], None, error))?,
             places: texture.places.iter().map(|p| p.component_div(&size)).collect(),
         })
     };
@@ -119,14 +121,18 @@ fn runtime_layer<E: std::fmt::Display>(
         name: layer.name.clone(),
         poses: shape.poses().to_vec(),
         texture_of: layer.poses.iter().map(|pose| pose.texture).collect(),
-        mesh: mesh.map_err(|error| error.to_string())?,
+        mesh: mesh.map_err(|error| PipelineError::stage(&[], None, error))?,
         rings: layer.rings.clone(),
         options: shape.options().clone(),
-        tie: shape.tie_points().map(|(to, own, other)| RuntimeTie {
-            to,
-            own: own.anchors().to_vec(),
-            other: other.anchors().to_vec(),
+        tie: shape.tie.as_ref().map(|tie| RuntimeTie {
+            to: tie.to,
+            own: tie.own.anchors.clone(),
+            other: tie.other.anchors.clone(),
         }),
-        textures: layer.textures.iter().map(texture).collect::<Result<_, String>>()?,
+        textures: layer
+            .textures
+            .iter()
+            .map(texture)
+            .collect::<Result<_, PipelineError>>()?,
     })
 }

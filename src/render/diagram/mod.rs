@@ -28,7 +28,7 @@ use tiny_skia::Color;
 
 pub use sections::{Link, Sections};
 
-use super::Frame;
+use super::{Frame, PictureError};
 use crate::matching::MatchReport;
 use crate::pose::{Mapping, PlacedLandmark};
 
@@ -72,24 +72,24 @@ pub struct Diagram<'a> {
 /// Draws the picture; `weights` gives the weights at a place of the pose space.
 ///
 /// # Errors
-/// A message if there is no pose, the parts do not fit one another, or there are so many poses that no picture holds
+/// [`PictureError`] if there is no pose, the parts do not fit one another, or there are so many poses that no picture holds
 /// them.
 pub fn draw(
     diagram: &Diagram,
     sections: &Sections,
     weights: impl Fn(&[f64]) -> Option<Vec<f64>>,
-) -> Result<Frame, String> {
+) -> Result<Frame, PictureError> {
     let count = diagram.mapping.poses.len();
     let fits = diagram.poses.len() == count
         && diagram.mapping.outlines.len() == count
         && sections.links().iter().all(|link| link.at.len() == count)
         && diagram.landmarks.iter().all(|landmark| landmark.at.len() == count);
     if count == 0 || !fits {
-        return Err("there is nothing to show: poses, outlines and landmarks do not belong together".to_owned());
+        return Err(PictureError::Mismatched { poses: count });
     }
     let layout = Layout::new(diagram.mapping, legend::height(count));
     let [width, height] = layout.size;
-    let mut canvas = Canvas::new(width, height).ok_or("there are too many poses for one picture")?;
+    let mut canvas = Canvas::new(width, height).ok_or(PictureError::TooManyPoses { poses: count })?;
     let headings = [
         "OUTLINES: EQUAL NUMBERS CORRESPOND",
         "INSIDE: EQUAL COLOURS CORRESPOND, ONE TRIANGULATION",

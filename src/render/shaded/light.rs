@@ -25,7 +25,7 @@ const SHOULDER: f64 = 0.82;
 
 /// What a form without a texture is made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Look {
+pub(crate) struct Look {
     /// Its colour: red, green, blue as in sRGB.
     pub colour: [u8; 3],
     /// Whether it is speckled.
@@ -34,7 +34,7 @@ pub struct Look {
 
 /// How even a colour is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Surface {
+pub(crate) enum Surface {
     /// The same everywhere.
     #[default]
     Even,

@@ -22,9 +22,9 @@ mod sheet_layout;
 mod tests;
 mod view;
 
-pub use light::{Look, Surface};
-pub use sheet::{CellKind, Sheet, SheetAxis, SheetCell};
-pub use view::{View, Window};
+pub(crate) use light::Look;
+pub(crate) use sheet::{CellKind, Sheet, SheetAxis, SheetCell};
+pub(crate) use view::{View, Window};
 
 use super::Frame;
 use crate::math::Point3;
@@ -33,7 +33,7 @@ use rayon::prelude::*;
 
 /// What all forms of a picture share: triangles, and where their corners lie in a texture.
 #[derive(Debug, Clone, Copy)]
-pub struct ShadedMesh<'a> {
+pub(crate) struct ShadedMesh<'a> {
     /// Vertices, counter-clockwise seen from outside.
     pub triangles: &'a [[usize; 3]],
     /// Places in the texture, from its lower left corner: (1, 1) is the upper right one.
@@ -44,7 +44,7 @@ pub struct ShadedMesh<'a> {
 
 /// One form.
 #[derive(Debug, Clone, Copy)]
-pub struct ShadedForm<'a> {
+pub(crate) struct ShadedForm<'a> {
     /// Positions, #vertices.
     pub positions: &'a [Point3],
     /// Unit normals, #vertices.
@@ -54,7 +54,7 @@ pub struct ShadedForm<'a> {
 }
 
 /// Samples along each side of a pixel.
-pub const SAMPLES: usize = 4;
+pub(crate) const SAMPLES: usize = 4;
 /// About how many pixels are drawn at a time, and at most how many rows: a few megabytes of samples.
 const BAND: usize = 1 << 16;
 const MOST_ROWS: usize = 64;
@@ -63,7 +63,7 @@ const MOST_ROWS: usize = 64;
 ///
 /// Vertices that are not finite, and triangles that name others than there are, are left out.
 #[must_use]
-pub fn shade(mesh: &ShadedMesh<'_>, form: &ShadedForm<'_>, view: &View, window: &Window, look: &Look) -> Frame {
+pub(crate) fn shade(mesh: &ShadedMesh<'_>, form: &ShadedForm<'_>, view: &View, window: &Window, look: &Look) -> Frame {
     let [width, height] = window.size;
     let samples = SAMPLES as f64;
     let place = |p: &Point3| {

@@ -11,6 +11,7 @@ use super::sheet_layout::{CAPTION_PX, Layout};
 use super::view::{View, Window};
 use super::{Frame, ShadedForm, ShadedMesh, shade};
 use crate::math::Point;
+use crate::render::PictureError;
 use crate::render::diagram::canvas::Canvas;
 use rayon::prelude::*;
 
@@ -26,7 +27,7 @@ const MARK_PX: f64 = 4.0;
 
 /// What a form on the sheet is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CellKind {
+pub(crate) enum CellKind {
     /// An example.
     Example,
     /// A blend that was placed here.
@@ -42,7 +43,7 @@ impl CellKind {
 
     /// What a form of this kind is made of.
     #[must_use]
-    pub fn look(self) -> Look {
+    pub(crate) fn look(self) -> Look {
         let (colour, surface) = match self {
             Self::Example => ([170, 92, 64], Surface::Even),
             Self::PseudoExample => ([194, 130, 100], Surface::Grainy),
@@ -83,7 +84,7 @@ impl CellKind {
 
 /// A side of the sheet.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SheetAxis {
+pub(crate) struct SheetAxis {
     /// The adjective.
     pub name: String,
     /// Its values, from the left or from the bottom.
@@ -92,7 +93,7 @@ pub struct SheetAxis {
 
 /// One form on the sheet.
 #[derive(Debug, Clone, Copy)]
-pub struct SheetCell<'a> {
+pub(crate) struct SheetCell<'a> {
     /// The form.
     pub form: ShadedForm<'a>,
     /// What it is.
@@ -103,7 +104,7 @@ pub struct SheetCell<'a> {
 
 /// The whole sheet.
 #[derive(Debug, Clone)]
-pub struct Sheet<'a> {
+pub(crate) struct Sheet<'a> {
     /// What it is of.
     pub title: &'a str,
     /// What holds for all forms.
@@ -126,22 +127,26 @@ impl Sheet<'_> {
     /// Draws it.
     ///
     /// # Errors
-    /// A message if there is not one form for each pair of values, or no picture is large enough.
-    pub fn draw(&self) -> Result<Frame, String> {
+    /// [`PictureError`] if there is not one form for each pair of values, or no picture is large enough.
+    pub(crate) fn draw(&self) -> Result<Frame, PictureError> {
         let columns = self.across.values.len();
         let rows = self.up.as_ref().map_or(1, |up| up.values.len());
         if columns == 0 || rows == 0 || self.cells.len() != columns * rows {
-            return Err(format!(
-                "{} forms do not fill {columns} columns and {rows} rows",
-                self.cells.len()
-            ));
+            return Err(PictureError::FormCount {
+                forms: self.cells.len(),
+                columns,
+                rows,
+            });
         }
         let points = self.cells.iter().flat_map(|cell| cell.form.positions);
-        let bounds = self.view.bounds(points).ok_or("no form has a finite vertex")?;
+        let bounds = self.view.bounds(points).ok_or(PictureError::NotFinite)?;
         let extent = bounds[1] - bounds[0];
         let layout = Layout::new(columns, rows, self.up.is_some(), [extent.x, extent.y], self.size);
         let [width, height] = layout.size;
-        let mut canvas = Canvas::new(width, height).ok_or("there are too many forms for one picture")?;
+        let too_many = PictureError::TooManyForms {
+            forms: self.cells.len(),
+        };
+        let mut canvas = Canvas::new(width, height).ok_or(too_many)?;
         canvas.fill(
             &rectangle(Point::zeros(), Point::new(width.into(), height.into()), 0.0),
             paper(),

@@ -1,5 +1,6 @@
 use proptest::prelude::*;
 
+use super::light::Surface;
 use super::*;
 
 const PLAIN: Look = Look {

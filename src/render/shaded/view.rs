@@ -7,7 +7,7 @@ const MARGIN: f64 = 0.06;
 
 /// A direction to look from. Forms have y up; seen are x to the right, y up, z towards the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct View {
+pub(crate) struct View {
     yaw: [f64; 2],
     pitch: [f64; 2],
 }
@@ -15,7 +15,7 @@ pub struct View {
 impl View {
     /// The form turned to the right by `yaw_degrees` about y, and looked at from `pitch_degrees` above.
     #[must_use]
-    pub fn new(yaw_degrees: f64, pitch_degrees: f64) -> Self {
+    pub(crate) fn new(yaw_degrees: f64, pitch_degrees: f64) -> Self {
         let turn = |degrees: f64| {
             let (sin, cos) = libm::sincos(degrees.to_radians());
             [sin, cos]
@@ -28,7 +28,7 @@ impl View {
 
     /// A point or direction as it is seen.
     #[must_use]
-    pub fn turned(&self, p: Point3) -> Point3 {
+    pub(crate) fn turned(&self, p: Point3) -> Point3 {
         let ([sin, cos], [sin_pitch, cos_pitch]) = (self.yaw, self.pitch);
         let (x, z) = (cos * p.x + sin * p.z, cos * p.z - sin * p.x);
         Point3::new(x, cos_pitch * p.y - sin_pitch * z, sin_pitch * p.y + cos_pitch * z)
@@ -36,7 +36,7 @@ impl View {
 
     /// The box of points as they are seen, its least and greatest corner; `None` without a finite one.
     #[must_use]
-    pub fn bounds<'a>(&self, points: impl IntoIterator<Item = &'a Point3>) -> Option<[Point3; 2]> {
+    pub(crate) fn bounds<'a>(&self, points: impl IntoIterator<Item = &'a Point3>) -> Option<[Point3; 2]> {
         let seen = points.into_iter().map(|p| self.turned(*p));
         let finite = seen.filter(|p| p.iter().all(|x| x.is_finite()));
         finite.fold(None, |bounds, p| match bounds {
@@ -48,7 +48,7 @@ impl View {
 
 /// The part of a view that a picture shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Window {
+pub(crate) struct Window {
     /// Columns and rows.
     pub size: [usize; 2],
     middle: [f64; 2],
@@ -58,7 +58,7 @@ pub struct Window {
 impl Window {
     /// A picture of `size` columns and rows with all of a box in it, as large as it can be, with a margin.
     #[must_use]
-    pub fn around([low, high]: [Point3; 2], size: [usize; 2]) -> Self {
+    pub(crate) fn around([low, high]: [Point3; 2], size: [usize; 2]) -> Self {
         let extent = high - low;
         let room = |side: usize| side as f64 * (1.0 - 2.0 * MARGIN);
         let scale = (room(size[0]) / extent.x).min(room(size[1]) / extent.y);
@@ -72,7 +72,7 @@ impl Window {
 
     /// Where a point of the view lies in the picture, in pixels from its upper left corner.
     #[must_use]
-    pub fn place(&self, seen: &Point3) -> [f64; 2] {
+    pub(crate) fn place(&self, seen: &Point3) -> [f64; 2] {
         [
             0.5 * self.size[0] as f64 + (seen.x - self.middle[0]) * self.pixels_per_unit,
             0.5 * self.size[1] as f64 - (seen.y - self.middle[1]) * self.pixels_per_unit,

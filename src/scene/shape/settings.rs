@@ -159,6 +159,7 @@ pub struct PseudoExample {
 
 /// Joints, and how vertices follow them.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SkeletonSettings {
     /// The file with the vertices' weights.
     pub weights: ShapeFile,
@@ -168,6 +169,7 @@ pub struct SkeletonSettings {
 
 /// A joint.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct JointSettings {
     /// Its name.
     pub name: String,
@@ -226,6 +228,7 @@ pub enum SurfacePoints {
 
 /// How forms are subdivided (Loop's scheme).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub struct SubdivisionSettings {
     /// How often every triangle is divided into four; 0 leaves forms as they are.
     pub steps: usize,
@@ -235,6 +238,7 @@ pub struct SubdivisionSettings {
 
 /// How the space is shown in one picture: two adjectives along its sides, the others fixed.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SheetSettings {
     /// What grows to the right.
     pub across: AxisSettings,
@@ -250,6 +254,7 @@ pub struct SheetSettings {
 
 /// One side of the sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct AxisSettings {
     /// The adjective.
     pub adjective: usize,

@@ -1,5 +1,6 @@
 //! Why a scene of a shape gives no forms.
 
+use crate::render::PictureError;
 use crate::scene::SceneError;
 use crate::shape3d::{RigError, ShapeError, SubdivisionError};
 use crate::weights::WeightError;
@@ -33,7 +34,7 @@ pub enum ShapeModelError {
     Weights(#[from] WeightError),
     /// No picture can be drawn.
     #[error("no contact sheet: {0}")]
-    Sheet(String),
+    Sheet(#[source] PictureError),
 }
 
 impl From<SceneError> for ShapeModelError {

@@ -1,13 +1,13 @@
 //! A shape, opened from its scene.
 
 use super::textures::Textures;
-use super::{ShapeModelError, files, space};
+use super::{ShapeModelError, ShapeNote, files, space};
 use crate::math::Point3;
 use crate::render::Frame;
 use crate::scene::{ShapeScene, SubdivisionSettings, Subject, SurfacePoints};
 use crate::shape3d::{
-    Example, Form, FormTopology, LoopSubdivision, NearSingular, NormalWeighting, Poser, Rig, RigScratch, Shape,
-    ShapeError, SubdividedPositions, SubdivisionOptions, subdivide_texture, vertex_normals,
+    Example, Form, FormTopology, LoopSubdivision, NormalWeighting, Poser, Rig, RigScratch, Shape, ShapeError,
+    SubdividedPositions, SubdivisionOptions, subdivide_texture, vertex_normals,
 };
 use crate::weights::WeightProvider;
 
@@ -32,7 +32,7 @@ pub struct ShapeModel {
     pub(super) subdivision: Option<LoopSubdivision>,
     surface: FormTopology,
     textures: Option<Textures>,
-    notes: Vec<String>,
+    notes: Vec<ShapeNote>,
 }
 
 /// A form of the shape.
@@ -79,7 +79,7 @@ impl ShapeModel {
             let mut rest_forms = Vec::new();
             for (form, example) in model_forms.iter_mut().zip(&scene.examples) {
                 let rest = rig.untransform(&example.at, form)?;
-                notes.extend(near_singular(&example.name, &rest.near_singular, &rig));
+                notes.extend(ShapeNote::near_singular(&example.name, &rest.near_singular, &rig));
                 form.clone_from(&rest.positions);
                 rest_forms.push(rest);
             }
@@ -122,7 +122,7 @@ impl ShapeModel {
 
     /// What the designer should know: vertices whose joints leave no usable inverse.
     #[must_use]
-    pub fn notes(&self) -> &[String] {
+    pub fn notes(&self) -> &[ShapeNote] {
         &self.notes
     }
 
@@ -211,22 +211,4 @@ fn subdivided_topology(
     let triangles = fine.triangles().to_vec();
     FormTopology::from_textured_triangles(fine.vertex_count(), triangles, texture.coordinates, texture.triangles)
         .map_err(|error| of_subdivision(scene, &error.to_string()))
-}
-
-/// What to say of vertices without a usable inverse.
-fn near_singular(example: &str, found: &[NearSingular], rig: &Rig) -> Option<String> {
-    let worst = found.iter().max_by(|a, b| a.condition.total_cmp(&b.condition))?;
-    let joints: Vec<String> = worst
-        .joints
-        .iter()
-        .map(|&joint| format!("'{}'", rig.skeleton().joints()[joint].name))
-        .collect();
-    Some(format!(
-        "example '{example}': the joints of {} vertices turn against one another so far that their blend has no usable inverse, \
-         worst vertex {} between {} (condition {:.1e}); what is missing there is blended after the joints",
-        found.len(),
-        worst.vertex,
-        joints.join(" and "),
-        worst.condition
-    ))
 }
