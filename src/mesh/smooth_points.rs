@@ -6,17 +6,23 @@
 //!
 //! 1. The vertices within a radius of the place, reached along edges, so that what lies beside it across a gap does not count. The radius is that many
 //!    mean lengths of the edges there.
-//! 2. Weights `q = (1 - (distance / radius)^2)^2`, and the shares of the least-squares affine map at the place.
+//! 2. Weights `q = (1 - (distance / radius)^2)^2`, less for vertices that the map around the place does not take to where they are in the other poses: in an
+//!    armpit the mesh bends between arm and chest, and is to bend there. The map is the mean of those of the triangle's vertices, which each fit their edges best.
+//! 3. The shares of the least-squares affine map at the place.
 //!
 //! *Guarantee*: affine maps are reproduced, so that at the positions at which it was made every place is where it was, to rounding.
 //!
 //! Where too few vertices are near, or all lie along a line, the place stays with its triangle.
 
 use super::{MeshPoint, Topology};
-use crate::math::Point;
+use crate::math::{Matrix, Point, point};
 
 /// The radius, in mean lengths of the edges at the place: the least within which there are two vertices in every direction.
 const RADIUS: f64 = 2.0;
+
+/// How far a vertex may be from where the map around the place has it in another pose to count for a third, in radii: less bends from edge to edge of a curve, more
+/// where limbs begin.
+const BENT: f64 = 0.3;
 
 /// The least determinant of the second moments of the weighted vertices, relative to the radius: of vertices along a line it is 0, of those within half a disc a
 /// hundredth.
@@ -24,7 +30,7 @@ const LEAST_SPREAD: f64 = 1e-4;
 
 /// Places with their shares of a mesh's vertices.
 #[derive(Debug, Clone, Default)]
-pub struct SmoothPoints {
+pub(crate) struct SmoothPoints {
     /// Where the shares of each place begin, and where the last end.
     starts: Vec<usize>,
     vertices: Vec<u32>,
@@ -32,10 +38,9 @@ pub struct SmoothPoints {
 }
 
 impl SmoothPoints {
-    /// The places of `anchors` where the vertices of the mesh `topology` lie at `positions`.
-    #[must_use]
-    pub fn new(topology: &Topology, positions: &[Point], anchors: &[MeshPoint]) -> Self {
-        let around = Around::new(topology, positions);
+    /// The places of `anchors` on pose `own` of the mesh `topology`, whose vertices lie at `poses`.
+    pub(crate) fn new(topology: &Topology, poses: &[Vec<Point>], own: usize, anchors: &[MeshPoint]) -> Self {
+        let around = Around::new(topology, poses, own);
         let mut points = Self {
             starts: vec![0],
             ..Self::default()
@@ -54,20 +59,12 @@ impl SmoothPoints {
     }
 
     /// How many places there are.
-    #[must_use]
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.starts.len().saturating_sub(1)
     }
 
-    /// Whether there is none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// Where place `k` is when the mesh's vertices are at `positions`.
-    #[must_use]
-    pub fn at(&self, k: usize, positions: &[Point]) -> Point {
+    pub(crate) fn at(&self, k: usize, positions: &[Point]) -> Point {
         let own = self.starts[k]..self.starts[k + 1];
         let shares = self.vertices[own.clone()].iter().zip(&self.shares[own]);
         shares.fold(Point::zeros(), |sum, (&vertex, &share)| {
@@ -82,10 +79,21 @@ struct Around<'a> {
     neighbours: Vec<Vec<usize>>,
     /// By vertex, the mean length of its edges.
     lengths: Vec<f64>,
+    others: Vec<Other<'a>>,
+}
+
+/// Another pose.
+struct Other<'a> {
+    positions: &'a [Point],
+    /// By vertex, the linear map of what is around it.
+    maps: Vec<Matrix>,
+    /// A length there beside one here.
+    scale: f64,
 }
 
 impl<'a> Around<'a> {
-    fn new(topology: &Topology, positions: &'a [Point]) -> Self {
+    fn new(topology: &Topology, poses: &'a [Vec<Point>], own: usize) -> Self {
+        let positions = poses[own].as_slice();
         let mut neighbours = vec![Vec::new(); positions.len()];
         for (a, b) in topology.edges() {
             neighbours[a].push(b);
@@ -98,8 +106,29 @@ impl<'a> Around<'a> {
         Self {
             positions,
             lengths: neighbours.iter().enumerate().map(mean).collect(),
+            others: (poses.iter().enumerate())
+                .filter(|(pose, _)| *pose != own)
+                .map(|(_, theirs)| Other {
+                    positions: theirs,
+                    maps: (0..positions.len())
+                        .map(|v| map_around(v, &neighbours[v], positions, theirs))
+                        .collect(),
+                    scale: (area(topology, theirs) / area(topology, positions)).sqrt(),
+                })
+                .collect(),
             neighbours,
         }
+    }
+
+    /// How far `v` is from where the map around a place has it, the most over the other poses, in radii.
+    fn bent(&self, anchor: &MeshPoint, place: Point, radius: f64, v: usize) -> f64 {
+        let of_pose = |other: &Other| {
+            let maps = anchor.vertices.iter().zip(anchor.shares);
+            let map: Matrix = maps.map(|(&vertex, share)| other.maps[vertex] * share).sum();
+            let expected = anchor.at(other.positions) + map * (self.positions[v] - place);
+            (other.positions[v] - expected).norm() / (radius * other.scale)
+        };
+        self.others.iter().map(of_pose).fold(0.0, f64::max)
     }
 
     /// Puts the vertices around a place and their shares into `near`; `false` where they do not say how it moves.
@@ -126,7 +155,12 @@ impl<'a> Around<'a> {
         for (v, weight) in near.iter_mut() {
             let aside = aside(*v);
             let rest = (1.0 - aside.norm_squared()).max(0.0);
-            *weight = rest * rest;
+            let bent = if rest > 0.0 {
+                self.bent(anchor, place, radius, *v) / BENT
+            } else {
+                0.0
+            };
+            *weight = rest * rest * libm::exp(-bent * bent);
             let basis = nalgebra::Vector3::new(1.0, aside.x, aside.y);
             moments += basis * basis.transpose() * *weight;
         }
@@ -143,6 +177,24 @@ impl<'a> Around<'a> {
         near.retain(|(_, share)| *share != 0.0);
         true
     }
+}
+
+/// The linear map that takes the edges at a vertex nearest to where they are in another pose.
+fn map_around(v: usize, neighbours: &[usize], from: &[Point], to: &[Point]) -> Matrix {
+    let (mut mixed, mut second) = (Matrix::zeros(), Matrix::zeros());
+    for &w in neighbours {
+        let (here, there) = (from[w] - from[v], to[w] - to[v]);
+        mixed += there * here.transpose();
+        second += here * here.transpose();
+    }
+    second
+        .try_inverse()
+        .map_or_else(Matrix::identity, |inverse| mixed * inverse)
+}
+
+fn area(topology: &Topology, positions: &[Point]) -> f64 {
+    let doubled = |&[a, b, c]: &[usize; 3]| point::cross(positions[b] - positions[a], positions[c] - positions[a]);
+    topology.triangles().iter().map(doubled).sum::<f64>().abs()
 }
 
 #[cfg(test)]
@@ -164,7 +216,7 @@ mod tests {
         let locator = PointLocator::new(topology.triangles(), positions);
         let places = (0..=80).map(|k| Point::new(0.1 * f64::from(k), y));
         let anchors = locator.bind_along(places).expect("in the mesh");
-        let smooth = SmoothPoints::new(topology, positions, &anchors);
+        let smooth = SmoothPoints::new(topology, &[positions.to_vec()], 0, &anchors);
         (anchors, smooth)
     }
 
@@ -202,6 +254,37 @@ mod tests {
     }
 
     #[test]
+    fn where_another_pose_bends_sharply_so_does_the_line() {
+        let (topology, positions) = strip(8);
+        // The right half is turned up by a right angle at its lower corner.
+        let folded: Vec<Point> = (positions.iter())
+            .map(|p| {
+                if p.x > 4.0 {
+                    Point::new(4.0 + p.y, p.y.min(0.0) - (p.x - 4.0))
+                } else {
+                    *p
+                }
+            })
+            .collect();
+        let locator = PointLocator::new(topology.triangles(), &positions);
+        let places = (0..=80).map(|k| Point::new(0.1 * f64::from(k), 0.3));
+        let anchors = locator.bind_along(places).expect("in the mesh");
+        let unaware = SmoothPoints::new(&topology, std::slice::from_ref(&positions), 0, &anchors);
+        let aware = SmoothPoints::new(&topology, &[positions, folded.clone()], 0, &anchors);
+        let away = |smooth: &SmoothPoints| {
+            let distances = anchors.iter().enumerate();
+            let distances = distances.map(|(k, anchor)| (smooth.at(k, &folded) - anchor.at(&folded)).norm());
+            distances.fold(0.0, f64::max)
+        };
+        assert!(
+            away(&aware) < 0.6 * away(&unaware),
+            "{} {}",
+            away(&aware),
+            away(&unaware)
+        );
+    }
+
+    #[test]
     fn what_lies_beside_across_a_gap_does_not_count_and_a_single_triangle_carries() {
         let (topology, positions) = strip(8);
         // The strip once more, right beside it.
@@ -228,7 +311,7 @@ mod tests {
             vertices: [0, 1, 2],
             shares: [0.2, 0.3, 0.5],
         };
-        let smooth = SmoothPoints::new(&single, &corner, &[anchor]);
+        let smooth = SmoothPoints::new(&single, &[corner.to_vec()], 0, &[anchor]);
         let moved = corner.map(|p| p * 3.0);
         assert!((smooth.at(0, &moved) - anchor.at(&moved)).norm() < 1e-12);
     }

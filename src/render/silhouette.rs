@@ -74,10 +74,10 @@ impl Silhouette {
                 })
                 .collect();
             let carried = |anchors: Vec<Vec<MeshPoint>>| {
-                let of_poses = anchors.par_iter().zip(mapping.poses.positions());
+                let of_poses = anchors.par_iter().enumerate();
                 CarriedRing {
                     smooth: of_poses
-                        .map(|(anchors, positions)| SmoothPoints::new(topology, positions, anchors))
+                        .map(|(own, anchors)| SmoothPoints::new(topology, mapping.poses.positions(), own, anchors))
                         .collect(),
                     anchors,
                 }
