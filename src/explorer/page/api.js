@@ -1,8 +1,18 @@
+// @ts-check
 // Requests to the server behind the page. Addresses are relative: the token is part of the page's own address.
 import { exchange } from './connections.js';
 
+/** @import { Frame, Got, Mesh, Posted, Problem, Shape } from './answers.js' */
+/** @import { Answer, Method } from './connections.js' */
+
+/** @typedef {{ [name: string]: string | number | number[] | string[] | null | undefined }} Fields */
+
 /** An answer that says why there is none: `problem` is what the server wrote. */
 export class Refused extends Error {
+  /**
+   * @param {number} status
+   * @param {Problem | null} problem
+   */
   constructor(status, problem) {
     super(problem?.message ?? `the server answered ${status}`);
     this.status = status;
@@ -10,6 +20,16 @@ export class Refused extends Error {
   }
 }
 
+/**
+ * What went wrong, as it is told to the artist.
+ * @type {(error: unknown) => Problem}
+ */
+export function problemOf(error) {
+  const { problem, message } = /** @type {Refused} */ (error);
+  return problem ?? { message };
+}
+
+/** @type {(method: Method, route: string, body?: unknown) => Promise<Answer>} */
 async function asked(method, route, body) {
   const answer = await exchange(method, route, body);
   if (answer.status === 200) return answer;
@@ -20,7 +40,10 @@ async function asked(method, route, body) {
   throw new Refused(answer.status, problem);
 }
 
-/** `{at: [1, 2], box: null}` as `?at=1,2`. */
+/**
+ * `{at: [1, 2], box: null}` as `?at=1,2`.
+ * @type {(fields: Fields) => string}
+ */
 export function query(fields) {
   const search = new URLSearchParams();
   for (const [name, value] of Object.entries(fields)) {
@@ -31,25 +54,32 @@ export function query(fields) {
   return text && `?${text}`;
 }
 
+/** @type {<R extends keyof Got>(route: R, fields?: Fields) => Promise<Got[R]>} */
 export async function getJson(route, fields = {}) {
   return JSON.parse((await asked('GET', `${route}${query(fields)}`)).text());
 }
 
-/** The 4-byte numbers of a binary answer. */
+/**
+ * The 4-byte numbers of a binary answer.
+ * @type {(route: string, fields?: Fields) => Promise<Words>}
+ */
 export async function getWords(route, fields = {}) {
   return new Words((await asked('GET', `${route}${query(fields)}`)).bytes);
 }
 
+/** @type {<R extends keyof Posted>(route: R, body?: object) => Promise<Posted[R]>} */
 export async function postJson(route, body = {}) {
   return JSON.parse((await asked('POST', route, body)).text());
 }
 
+/** @type {(route: string, body?: object) => Promise<Words>} */
 export async function postWords(route, body = {}) {
   return new Words((await asked('POST', route, body)).bytes);
 }
 
 /** Little-endian u32 and f32 read one after the other. */
 export class Words {
+  /** @param {Uint8Array} bytes */
   constructor({ buffer, byteOffset, byteLength }) {
     this.whole = new Uint32Array(buffer, byteOffset, byteLength / 4);
     this.real = new Float32Array(buffer, byteOffset, byteLength / 4);
@@ -68,32 +98,35 @@ export class Words {
     return this.real[this.next++];
   }
 
+  /** @type {(count: number) => Uint32Array} */
   u32s(count) {
     return this.whole.subarray(this.next, (this.next += count));
   }
 
+  /** @type {(count: number) => Float32Array} */
   f32s(count) {
     return this.real.subarray(this.next, (this.next += count));
   }
 }
 
-/** The blocks of `api/frame`. */
+/**
+ * The blocks of `api/frame`.
+ * @type {(words: Words) => Frame[]}
+ */
 export function readFrames(words) {
   const frames = [];
   while (!words.done) frames.push(readFrame(words));
   return frames;
 }
 
+/** @type {(words: Words) => Frame} */
 function readFrame(words) {
   words.u32();
-  const frame = { shape: words.u32(), revision: words.u32() };
-  const poses = words.u32();
-  const layers = words.u32();
-  frame.inverted = words.u32();
-  frame.weights = words.f32s(poses);
-  frame.textureWeights = words.f32s(poses);
-  frame.order = Array.from(words.u32s(layers));
-  frame.layers = Array.from({ length: layers }, () => {
+  const [shape, revision, poses, layers, inverted] = words.u32s(5);
+  const weights = words.f32s(poses);
+  const textureWeights = words.f32s(poses);
+  const order = Array.from(words.u32s(layers));
+  const shapes = Array.from({ length: layers }, () => {
     const vertices = words.u32();
     const own = words.u32();
     const textures = words.u32();
@@ -108,10 +141,13 @@ function readFrame(words) {
       rings: Array.from({ length: rings }, () => words.f32s(2 * words.u32())),
     };
   });
-  return frame;
+  return { shape, revision, inverted, weights, textureWeights, order, layers: shapes };
 }
 
-/** The layers of `api/mesh`. */
+/**
+ * The layers of `api/mesh`.
+ * @type {(words: Words) => Mesh[]}
+ */
 export function readMeshes(words) {
   const meshes = [];
   while (!words.done) {

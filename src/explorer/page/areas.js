@@ -1,3 +1,4 @@
+// @ts-check
 // How much of each pixel the silhouette covers, exactly: what `render::coverage` does.
 //
 // Each edge adds, in every row it crosses, the signed area to its right within the pixels it passes and the full height to all further
@@ -10,6 +11,7 @@ let bytes = new Uint8Array(0);
 /**
  * The covered part of each pixel of a window [left, top, right, bottom], 0 to 255, row by row. Rings are x, y in drawing units;
  * `view` is the scale and the shift from these to pixels. What is answered is overwritten by the next call.
+ * @type {(rings: Float32Array[], view: number[], window: number[]) => Uint8Array}
  */
 export function coveredAreas(rings, [scale, shiftX, shiftY], [left, top, right, bottom]) {
   const [width, height] = [right - left, bottom - top];
@@ -47,7 +49,10 @@ export function coveredAreas(rings, [scale, shiftX, shiftY], [left, top, right, 
   return bytes.subarray(0, width * height);
 }
 
-/** An edge that runs down from (x0, y0) to (x1, y1). */
+/**
+ * An edge that runs down from (x0, y0) to (x1, y1).
+ * @type {(x0: number, y0: number, x1: number, y1: number, sign: number, stride: number, width: number, height: number) => void}
+ */
 function addEdge(x0, y0, x1, y1, sign, stride, width, height) {
   if (y1 <= 0 || y0 >= height) return;
   const slope = (x1 - x0) / (y1 - y0);
@@ -68,7 +73,10 @@ function addEdge(x0, y0, x1, y1, sign, stride, width, height) {
   }
 }
 
-/** A piece within one row, from `a` to `b`, of a signed height. */
+/**
+ * A piece within one row, from `a` to `b`, of a signed height.
+ * @type {(row: number, a: number, b: number, height: number, width: number) => void}
+ */
 function addSpan(row, a, b, height, width) {
   if (b <= 0) {
     sums[row] += height;

@@ -1,6 +1,7 @@
+// @ts-check
 // The bar at the top, and the one over the picture.
 import { asked, emit, look, on, store } from './state.js';
-import { byId, h } from './dom.js';
+import { byId, found, h } from './dom.js';
 import { iconButton, segments, toggle } from './controls.js';
 import { icon } from './icons.js';
 import { copyCommand, openExport } from './export.js';
@@ -34,11 +35,11 @@ byId('bar-tools').append(undo, redo, h('span', { class: 'rule' }),
 
 const saved = byId('saved');
 const banner = h('div', { class: 'banner hidden', role: 'alert' });
-app.querySelector('.centre').prepend(banner);
+found(app, '.centre')?.prepend(banner);
 
 function drawState() {
   const { state } = store;
-  for (const [button, label, name] of [[undo, state.undo, 'Undo'], [redo, state.redo, 'Redo']]) {
+  for (const { button, label, name } of [{ button: undo, label: state.undo, name: 'Undo' }, { button: redo, label: state.redo, name: 'Redo' }]) {
     button.disabled = !label;
     button.title = label ? `${name}: ${label}` : name;
     button.setAttribute('aria-label', button.title);
@@ -52,9 +53,9 @@ function drawState() {
   byId('scene-file').textContent = state.temporary ? '' : store.scene?.file ?? '';
   saved.dataset.kind = kind;
   saved.replaceChildren(h('span', { class: 'dot' }), text);
-  saved.title = state.save_error?.message ?? state.save_error ?? (state.timings?.mapping_ms ? `Last mapping: ${Math.round(state.timings.mapping_ms)} ms` : '');
-  document.documentElement.dataset.seq = state.seq;
-  document.documentElement.dataset.working = state.working;
+  saved.title = state.save_error ?? (state.timings?.mapping_ms ? `Last mapping: ${Math.round(state.timings.mapping_ms)} ms` : '');
+  document.documentElement.dataset.seq = String(state.seq);
+  document.documentElement.dataset.working = String(state.working);
   const broken = !(state.revisions.shape > 0);
   const first = state.problems?.[0];
   const shown = state.conflict || state.save_error || broken || first;
@@ -65,7 +66,7 @@ function drawState() {
       h('button', { type: 'button', class: 'bordered', onclick: () => asked('conflict', { take: 'theirs' }) }, 'Read the file'),
       h('button', { type: 'button', class: 'bordered', onclick: () => asked('conflict', { take: 'mine' }) }, 'Keep what is here'));
   } else if (state.save_error) {
-    banner.replaceChildren(icon('warn'), h('span', { class: 'grow' }, `Not saved: ${state.save_error.message ?? state.save_error}`), h('button', { type: 'button', class: 'bordered', onclick: () => asked('save', {}) }, 'Try again'));
+    banner.replaceChildren(icon('warn'), h('span', { class: 'grow' }, `Not saved: ${state.save_error}`), h('button', { type: 'button', class: 'bordered', onclick: () => asked('save', {}) }, 'Try again'));
   } else {
     const where = [first?.landmark && `landmark ${first.landmark}`, first?.pose && `pose ${first.pose}`, first?.line && `line ${first.line}`].filter(Boolean).join(', ');
     banner.replaceChildren(icon('warn'), h('span', { class: 'grow' }, first?.message ?? 'The scene cannot be mapped.', where ? h('span', { class: 'faint' }, ` ${where}`) : null, broken ? null : h('span', { class: 'faint' }, ' The last good shape is shown.')),
@@ -94,8 +95,8 @@ byId('picture-tools').append(main, h('span', { class: 'rule' }), ...ofPicture, m
 function drawView() {
   [main, tool, onion, marks, mesh, places].forEach((control) => control.update());
   const shown = store.view.main;
-  const zoom = byId('picture-tools').querySelector('.zoom');
-  [...ofPicture, zoom].forEach((element) => element.classList.toggle('hidden', shown !== 'picture'));
+  const zoom = found(byId('picture-tools'), '.zoom');
+  [...ofPicture, zoom].forEach((element) => element?.classList.toggle('hidden', shown !== 'picture'));
   marks.classList.toggle('hidden', shown !== 'matches');
   mesh.classList.toggle('hidden', shown === 'drawings');
   told.classList.toggle('hidden', shown !== 'drawings');

@@ -1,3 +1,4 @@
+// @ts-check
 // `?bench`: what a drag costs here, measured by the page: request, answer, drawing, displayed frames.
 import { getWords, readFrames } from './api.js';
 import { byId, h } from './dom.js';
@@ -5,16 +6,24 @@ import { outlines, settled, wantFrame } from './frames.js';
 import { drawNow } from './picture.js';
 import { Drag, look, moveTo, on, store } from './state.js';
 
+/** @import { Place } from './answers.js' */
+
 const REQUESTS = 300;
 const DRAWINGS = 60;
 const SECONDS = 5;
 const LANDMARKS = 12;
 
+/** @type {(values: number[]) => number[]} */
 const sorted = (values) => values.slice().sort((a, b) => a - b);
+/** @type {(values: number[], part: number) => number} */
 const quantile = (values, part) => sorted(values)[Math.min(values.length - 1, Math.floor(part * values.length))];
+/** @type {(values: number[]) => string} */
 const shown = (values) => `${quantile(values, 0.5).toFixed(2)} ms (95 %: ${quantile(values, 0.95).toFixed(2)} ms)`;
 
-/** A place on a curve that passes through the whole box. */
+/**
+ * A place on a curve that passes through the whole box.
+ * @type {(t: number) => Place}
+ */
 function along(t) {
   const { box, dimension, poses } = store.scene;
   if (!box || dimension !== 2) return poses[Math.floor(t) % poses.length].at;
@@ -25,7 +34,8 @@ function along(t) {
 /** Moves landmarks, one after the other, until the match and the mesh are there again; leaves the scene as it was. */
 async function moveLandmarks() {
   const { landmarks, poses } = store.scene;
-  const movable = landmarks.filter((landmark) => !landmark.path && (landmark.layer ?? 0) === store.layer);
+  const movable = landmarks.filter((landmark) => !landmark.path).filter((landmark) => (landmark.layer ?? 0) === store.layer);
+  /** @type {number[]} */
   const times = [];
   if (movable.length === 0) return times;
   const opened = once('matched', () => true);
@@ -34,10 +44,11 @@ async function moveLandmarks() {
   await rest();
   for (let k = 0; k < LANDMARKS; k++) {
     const { name, at } = movable[Math.floor((k * movable.length) / LANDMARKS)];
-    const [pose, [x, y]] = Object.entries(at).find(([own]) => poses.some((other) => other.name === own));
+    const pose = Object.keys(at).find((own) => poses.some((other) => other.name === own)) ?? '';
+    const [x, y] = at[pose];
     const drag = new Drag('measure');
     const before = store.state.revisions.shape;
-    const seen = once('matched', (shape) => shape > before);
+    const seen = once('matched', (shape) => Number(shape) > before);
     const started = performance.now();
     drag.to([{ op: 'move_landmark', landmark: name, at: { [pose]: [x + 1.5, y + 0.5] } }]);
     if (await seen) times.push(performance.now() - started);
@@ -50,9 +61,13 @@ async function moveLandmarks() {
   return times;
 }
 
-/** Until an event that is meant; false if none comes. */
+/**
+ * Until an event that is meant; false if none comes.
+ * @type {(name: 'drawn' | 'matched', isMeant: (shape: number | void) => boolean, patience?: number) => Promise<boolean>}
+ */
 function once(name, isMeant, patience = 5000) {
   return new Promise((done) => {
+    /** @type {(came: boolean) => void} */
     const end = (came) => {
       stop();
       clearTimeout(giveUp);
@@ -66,6 +81,7 @@ function once(name, isMeant, patience = 5000) {
 /** What follows a change when nobody drags (the camera is found anew, pictures are drawn) is over soon. */
 const rest = () => new Promise((go) => setTimeout(go, 400));
 
+/** @type {() => Promise<number>} */
 const displayed = () => new Promise((done) => requestAnimationFrame(done));
 
 export async function measure() {
@@ -74,12 +90,15 @@ export async function measure() {
   const table = h('table', {});
   const dialog = h('dialog', { class: 'dialog bench', 'aria-label': 'Measurements' }, h('header', {}, h('h2', {}, 'Measurements')), table);
   document.body.append(dialog);
+  /** @type {(name: string, value: string) => void} */
   const say = (name, value) => table.append(h('tr', {}, h('th', { scope: 'row' }, name), h('td', {}, value)));
+  /** @type {Record<string, unknown>} */
   const result = { painter: byId('picture').dataset.painter };
   say('Scene', `${store.scene.name}: ${store.puppet.layers.reduce((sum, layer) => sum + layer.vertices, 0)} vertices, ${store.puppet.layers.reduce((sum, layer) => sum + layer.triangles, 0)} triangles, ${store.scene.poses.length} poses`);
   const { width, height, dataset } = byId('picture');
   say('Canvas', `${width} × ${height} pixels, painted by the ${dataset.painter === 'card' ? 'graphics card' : 'processor'}`);
 
+  /** @type {number[]} */
   const requests = [];
   let bytes = 0;
   for (let k = 0; k < REQUESTS; k++) {
@@ -93,6 +112,7 @@ export async function measure() {
   say('Request to frame', `${shown(requests)}, ${(bytes / 1024).toFixed(1)} KB`);
 
   await settled();
+  /** @type {number[]} */
   const drawings = [];
   for (let k = 0; k < DRAWINGS; k++) {
     const started = performance.now();
@@ -104,14 +124,16 @@ export async function measure() {
   say('Drawing a frame', shown(drawings));
 
   // What a drag does: a new place each displayed frame; how many are drawn, and how late.
+  /** @type {Map<string, number>} */
   const moved = new Map();
+  /** @type {number[]} */
   const latencies = [];
   let drawn = 0;
   let counting = true;
   on('drawn', () => {
     const key = store.frame.place.join(',');
     if (!counting || !moved.has(key)) return;
-    latencies.push(performance.now() - moved.get(key));
+    latencies.push(performance.now() - (moved.get(key) ?? NaN));
     moved.delete(key);
     drawn++;
   });

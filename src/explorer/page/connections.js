@@ -1,7 +1,12 @@
+// @ts-check
 // Requests over connections that stay open (WebSockets). On a browser that is busy drawing, a fetch takes 3 to 5 ms longer, since it is
 // set up anew each time; that is a third of the time between two displayed frames.
 //
 // A connection carries one request at a time. A request that finds none free goes by fetch, and one more is opened for the next.
+
+/** @typedef {'GET' | 'POST'} Method */
+/** @typedef {`${Method} ${string}\n${string}`} Message A text message of the socket: method and route, then the body as JSON, if there is one. */
+/** @typedef {{ status: number, bytes: Uint8Array<ArrayBuffer>, text: () => string }} Answer A binary message of the socket, taken apart. */
 
 /** Connections at a time: one waits for the next state, the others are for what moves at once. */
 const MOST = 6;
@@ -9,6 +14,7 @@ const MOST = 6;
 /** Connections in a row that could not be opened, after which no more are tried: something between lets none through. */
 const MOST_FAILURES = 3;
 
+/** @type {WebSocket[]} */
 const free = [];
 let open = 0;
 let failures = 0;
@@ -33,17 +39,24 @@ function connect() {
   });
 }
 
-/** The answer to a request, `body` as JSON if there is one: {status, bytes, text()}; `bytes` begin at a multiple of four. */
+/**
+ * The answer to a request, `body` as JSON if there is one: {status, bytes, text()}; `bytes` begin at a multiple of four.
+ * @type {(method: Method, route: string, body?: unknown) => Promise<Answer>}
+ */
 export async function exchange(method, route, body) {
   const connection = free.pop();
   if (connection) return overConnection(connection, method, route, body);
   if (open < MOST && failures < MOST_FAILURES) connect();
+  /** @type {Record<string, string>} */
   const headers = body === undefined ? {} : { 'Content-Type': 'application/json' };
-  const response = await fetch(`api/${route}`, { method, headers, body: body && JSON.stringify(body) });
+  const response = await fetch(`api/${route}`, { method, headers, body: body ? JSON.stringify(body) : undefined });
   return answered(response.status, new Uint8Array(await response.arrayBuffer()));
 }
 
+/** @type {(connection: WebSocket, method: Method, route: string, body: unknown) => Promise<Answer>} */
 function overConnection(connection, method, route, body) {
+  /** @type {Message} */
+  const message = `${method} ${route}\n${body === undefined ? '' : JSON.stringify(body)}`;
   return new Promise((done, fail) => {
     const broken = () => fail(new TypeError('the connection to inbetween broke'));
     connection.addEventListener('close', broken);
@@ -53,9 +66,10 @@ function overConnection(connection, method, route, body) {
       const [status] = new Uint32Array(data, 0, 1);
       done(answered(status, new Uint8Array(data, 4)));
     }, { once: true });
-    connection.send(`${method} ${route}\n${body === undefined ? '' : JSON.stringify(body)}`);
+    connection.send(message);
   });
 }
 
 const decoder = new TextDecoder();
+/** @type {(status: number, bytes: Uint8Array<ArrayBuffer>) => Answer} */
 const answered = (status, bytes) => ({ status, bytes, text: () => decoder.decode(bytes) });

@@ -1,34 +1,46 @@
+// @ts-check
 // Controls that several parts of the page are made of.
 import { h } from './dom.js';
 import { icon } from './icons.js';
 
-/** A button that shows an icon and says its label. */
+/** @import { Child, Properties, Updated } from './dom.js' */
+
+/**
+ * A button that shows an icon and says its label.
+ * @type {(name: string, label: string, onclick: () => void, properties?: Properties) => HTMLButtonElement}
+ */
 export function iconButton(name, label, onclick, properties = {}) {
   return h('button', { type: 'button', class: 'square', 'aria-label': label, title: label, onclick, ...properties }, icon(name));
 }
 
-/** A button that is on or off; `isOn` is asked by `update`. */
+/**
+ * A button that is on or off; `isOn` is asked by `update`.
+ * @type {(name: string, label: string, isOn: () => boolean, flip: (value: boolean) => void) => HTMLButtonElement & Updated}
+ */
 export function toggle(name, label, isOn, flip) {
-  const button = iconButton(name, label, () => flip(!isOn()));
+  const button = /** @type {HTMLButtonElement & Updated} */ (iconButton(name, label, () => flip(!isOn())));
   button.update = () => button.setAttribute('aria-pressed', String(isOn()));
   button.update();
   return button;
 }
 
-/** One of some values: [value, text or icon, label]. Arrow keys go from one to the next. */
+/**
+ * One of some values: [value, text or icon, label]. Arrow keys go from one to the next.
+ * @type {<V extends string>(label: string, choices: [V, string | SVGElement, string?][], current: () => V | null | undefined, choose: (value: V) => void) => HTMLDivElement & Updated}
+ */
 export function segments(label, choices, current, choose) {
   const buttons = choices.map(([value, shown, title]) =>
     h('button', {
       type: 'button', role: 'radio', 'aria-label': title ?? shown, title: title ?? null, 'data-value': value, class: title && typeof shown !== 'string' ? 'square' : null,
       onclick: () => choose(value),
     }, shown));
-  const group = h('div', { class: 'segments', role: 'radiogroup', 'aria-label': label }, buttons);
+  const group = /** @type {HTMLDivElement & Updated} */ (h('div', { class: 'segments', role: 'radiogroup', 'aria-label': label }, buttons));
   group.addEventListener('keydown', (event) => {
     const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
     if (!step) return;
     event.preventDefault();
     event.stopPropagation();
-    const next = buttons[(buttons.indexOf(document.activeElement) + step + buttons.length) % buttons.length];
+    const next = buttons[(buttons.indexOf(/** @type {HTMLButtonElement} */ (document.activeElement)) + step + buttons.length) % buttons.length];
     next.click();
     next.focus();
   });
@@ -43,13 +55,17 @@ export function segments(label, choices, current, choose) {
   return group;
 }
 
-/** A number: `take(value)` is called when a new one is entered. `update` shows what `current` says. */
+/**
+ * A number: `take(value)` is called when a new one is entered. `update` shows what `current` says.
+ * @type {(label: string, current: () => number | null | undefined, take: (value: number) => void, options?: Properties & { step?: number, digits?: number }) => HTMLInputElement & Updated}
+ */
 export function numberField(label, current, take, { step = 0.01, digits = 4, ...properties } = {}) {
-  const input = h('input', { type: 'number', step: 'any', 'aria-label': label, inputmode: 'decimal', ...properties });
+  const made = h('input', { type: 'number', step: 'any', 'aria-label': label, inputmode: 'decimal', ...properties });
+  const input = /** @type {HTMLInputElement & Updated} */ (made);
   input.update = () => {
     const value = current();
     if (document.activeElement === input && input.dataset.typed) return;
-    input.value = value === null || value === undefined ? '' : Number(value.toFixed(digits));
+    input.value = value === null || value === undefined ? '' : String(Number(value.toFixed(digits)));
   };
   const entered = () => {
     delete input.dataset.typed;
@@ -70,7 +86,7 @@ export function numberField(label, current, take, { step = 0.01, digits = 4, ...
     const direction = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     if (direction) {
       event.preventDefault();
-      input.value = Number((Number(input.value) + direction * step * (event.shiftKey ? 10 : 1)).toFixed(6));
+      input.value = String(Number((Number(input.value) + direction * step * (event.shiftKey ? 10 : 1)).toFixed(6)));
       entered();
     }
   });
@@ -78,11 +94,15 @@ export function numberField(label, current, take, { step = 0.01, digits = 4, ...
   return input;
 }
 
-/** A slider with its number. `drag(value)` while it moves, `take(value)` when it is let go. */
+/**
+ * A slider with its number. `drag(value)` while it moves, `take(value)` when it is let go.
+ * @type {(label: string, range: { min: number, max: number, step: number, digits?: number }, current: () => number, drag: ((value: number) => void) | null, take: (value: number) => void) => HTMLLabelElement & Updated}
+ */
 export function slider(label, { min, max, step, digits = 2 }, current, drag, take) {
   const number = h('output', { class: 'number' });
   const input = h('input', { type: 'range', min, max, step, 'aria-label': label });
   let held = false;
+  /** @type {(value: number) => unknown} */
   const show = (value) => (number.textContent = value.toFixed(digits));
   input.addEventListener('input', () => {
     held = true;
@@ -94,24 +114,31 @@ export function slider(label, { min, max, step, digits = 2 }, current, drag, tak
     take(Number(input.value));
   });
   input.addEventListener('keydown', (event) => event.stopPropagation());
-  const row = h('label', { class: 'slider' }, h('span', {}, label), input, number);
-  row.update = () => {
+  const whole = /** @type {HTMLLabelElement & Updated} */ (h('label', { class: 'slider' }, h('span', {}, label), input, number));
+  whole.update = () => {
     if (held) return;
-    input.value = current();
+    input.value = String(current());
     show(current());
   };
-  row.update();
-  return row;
+  whole.update();
+  return whole;
 }
 
-/** A choice from a menu. */
+/**
+ * A choice from a menu.
+ * @type {<V extends string>(label: string, choices: [V, string][], current: () => V | undefined, take: (value: V) => void) => HTMLSelectElement & Updated}
+ */
 export function menu(label, choices, current, take) {
-  const select = h('select', { 'aria-label': label, onchange: () => take(select.value) },
+  const made = h('select', { 'aria-label': label, onchange: () => take(/** @type {typeof choices[number][0]} */ (select.value)) },
     choices.map(([value, text]) => h('option', { value }, text)));
-  select.update = () => (select.value = current());
+  const select = /** @type {HTMLSelectElement & Updated} */ (made);
+  select.update = () => (select.value = String(current()));
   select.update();
   return select;
 }
 
-/** A label beside a control. */
-export const row = (label, ...controls) => h('div', { class: 'row' }, h('span', { class: 'label' }, label), h('div', { class: 'controls' }, controls));
+/**
+ * A label beside a control.
+ * @type {(label: string, ...controls: Child[]) => HTMLDivElement}
+ */
+export const row = (label, ...controls) => h('div', { class: 'row' }, h('span', { class: 'label' }, label), h('div', { class: 'controls' }, ...controls));

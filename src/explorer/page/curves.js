@@ -1,8 +1,11 @@
+// @ts-check
 // The frame itself, where drawings are carried as curves: once the probe rests, what is rendered takes the place of the pixels.
 import { query } from './api.js';
 import { h } from './dom.js';
 import { instead } from './frames.js';
 import { on, store } from './state.js';
+
+/** @import { Grid } from './painter.js' */
 
 /** Milliseconds without another frame after which the probe rests. */
 const RESTS_AFTER = 90;
@@ -14,6 +17,7 @@ let asked = 0;
 const isWanted = () => store.view.main === 'picture' && store.view.onion === 'off' && !store.view.mesh && store.view.tool !== 'bend' &&
   store.frame?.layers.length > 0 && (store.puppet?.layers ?? []).some((layer) => layer.curves);
 
+/** @type {(value: boolean) => void} */
 function show(value) {
   curves.classList.toggle('hidden', !value);
   curves.parentElement?.classList.toggle('curved', value);
@@ -41,7 +45,10 @@ async function load() {
   document.documentElement.dataset.curves = frame.place.join(',');
 }
 
-/** Lays it where the frame is. */
+/**
+ * Lays it where the frame is.
+ * @type {(corner: Grid, size: number[]) => void}
+ */
 export function placeCurves({ scale, x, y }, [width, height]) {
   curves.style.transform = `translate(${x}px, ${y}px)`;
   curves.style.width = `${width * scale}px`;

@@ -1,6 +1,7 @@
+// @ts-check
 // The export dialog: what to render, the command that does it, its progress.
 import { postJson } from './api.js';
-import { h } from './dom.js';
+import { found, h } from './dom.js';
 import { iconButton } from './controls.js';
 import { asked, on, store } from './state.js';
 import { toast } from './toasts.js';
@@ -10,6 +11,7 @@ const FORMATS = [
   ['mp4', 'MP4 (needs ffmpeg)'], ['webm', 'WebM (needs ffmpeg)'], ['glb', 'glTF, binary'], ['', 'PNG sequence in a folder'],
 ];
 
+/** @type {(label: string, control: HTMLElement) => HTMLElement} */
 const field = (label, control) => h('label', { class: 'row' }, h('span', { class: 'label' }, label), control);
 const output = h('input', { type: 'text', id: 'export-output', autofocus: true, spellcheck: 'false', autocomplete: 'off' });
 const format = h('select', { onchange: () => {
@@ -44,6 +46,7 @@ document.body.append(dialog);
 form.addEventListener('input', () => changed());
 form.addEventListener('keydown', (event) => event.stopPropagation());
 
+/** @type {(input: HTMLInputElement) => number | undefined} */
 const number = (input) => (input.value === '' ? undefined : Number(input.value));
 
 function fields() {
@@ -68,7 +71,7 @@ async function changed() {
     const answer = await postJson('command', { verb: 'render', ...fields() });
     if (mine === asking) command.textContent = answer.command;
   } catch (error) {
-    if (mine === asking) command.textContent = error.message;
+    if (mine === asking) command.textContent = /** @type {Error} */ (error).message;
   }
 }
 
@@ -76,7 +79,7 @@ export function openExport() {
   if (!store.scene?.animation) return;
   const { size, fps: own } = store.scene.animation;
   if (!output.value) output.value = `${store.scene.name}.gif`;
-  [width.value, height.value, fps.value] = [size[0], size[1], own];
+  [width.value, height.value, fps.value] = [size[0], size[1], own].map(String);
   showJob();
   changed();
   dialog.showModal();
@@ -85,7 +88,7 @@ export function openExport() {
 function showJob() {
   const job = store.state?.job;
   const running = job?.state === 'running';
-  form.querySelector('.progress').classList.toggle('hidden', !job);
+  found(form, '.progress')?.classList.toggle('hidden', !job);
   cancel.classList.toggle('hidden', !running);
   start.disabled = running;
   if (!job) return;
@@ -101,6 +104,7 @@ function showJob() {
   }[job.state]();
 }
 
+/** @type {string | null} */
 let told = null;
 on('state', () => {
   const job = store.state.job;
@@ -109,7 +113,10 @@ on('state', () => {
   told = job ? `${job.id} ${job.state}` : '';
 });
 
-/** Puts a text where it can be pasted. */
+/**
+ * Puts a text where it can be pasted.
+ * @type {(text: string) => Promise<void>}
+ */
 export async function copied(text) {
   try {
     await navigator.clipboard.writeText(text);
@@ -125,6 +132,6 @@ export async function copyCommand() {
     document.documentElement.dataset.copied = answer.command;
     await copied(answer.command);
   } catch (error) {
-    toast(error.message, { kind: 'problem' });
+    toast(/** @type {Error} */ (error).message, { kind: 'problem' });
   }
 }

@@ -1,8 +1,14 @@
+// @ts-check
 // What was taken for the figure of each drawing, asked for while the sheets are shown.
-import { getJson } from './api.js';
+import { getJson, problemOf } from './api.js';
 import { emit, on, store } from './state.js';
 
-/** By pose: `api/figure`. */
+/** @import { Figure } from './answers.js' */
+
+/**
+ * By pose: `api/figure`.
+ * @type {Map<number, Figure>}
+ */
 export const figures = new Map();
 
 /** Whether each layer has drawings of its own: loose parts are layers, too, but on one sheet. */
@@ -29,7 +35,7 @@ async function read() {
   const mine = ++reads;
   const poses = posesWithSheets();
   const found = await Promise.all(poses.map((pose) => getJson('figure', { layer: layerOfSheets(), pose }).catch((error) => {
-    emit('refused', error.problem ?? { message: error.message });
+    emit('refused', problemOf(error));
     return null;
   })));
   if (mine !== reads) return;

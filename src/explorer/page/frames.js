@@ -1,11 +1,19 @@
+// @ts-check
 // Frames of where the probe is: one request at a time, and the newest place wins.
 import { getJson, getWords, query, readFrames, Refused } from './api.js';
 import { emit, on, store } from './state.js';
 
+/** @import { Frame, Place } from './answers.js' */
+/** @import { Comparison, ShownFrame } from './state.js' */
+
 let wanted = false;
 let asking = false;
+/** @type {(() => void)[]} */
 const waiting = [];
-/** Milliseconds from request to answer of the latest frames. */
+/**
+ * Milliseconds from request to answer of the latest frames.
+ * @type {number[]}
+ */
 export const roundTrips = [];
 
 // Pointers move once a displayed frame, so that is how often frames are asked for.
@@ -13,9 +21,13 @@ export const roundTrips = [];
 /** Pixels of the screen that an outline may be off: the area of a pixel that it covers changes by as much at most. */
 const OUTLINES_WITHIN = 0.04;
 let asked = Infinity;
+/** @type {() => { silhouette: number, tolerance: number }} */
 export const outlines = () => ({ silhouette: 1, tolerance: OUTLINES_WITHIN * store.pixel });
 
-/** What a comparison shows in place of the scene's own settings. */
+/**
+ * What a comparison shows in place of the scene's own settings.
+ * @type {() => Comparison}
+ */
 export const instead = () => store.view.compare ?? {};
 
 async function ask() {
@@ -23,6 +35,7 @@ async function ask() {
   asking = true;
   wanted = false;
   const place = store.place.slice();
+  /** @type {ShownFrame | null} */
   let frame = null;
   try {
     frame = store.state.revisions.shape > 0 ? await askFrame(place) : await askWeights(place);
@@ -40,6 +53,7 @@ async function ask() {
   if (!wanted && !asking) waiting.splice(0).forEach((done) => done());
 }
 
+/** @type {(place: Place) => Promise<ShownFrame>} */
 async function askFrame(place) {
   const started = performance.now();
   asked = store.pixel;
@@ -48,10 +62,13 @@ async function askFrame(place) {
   if (roundTrips.length > 240) roundTrips.shift();
   const [frame] = readFrames(words);
   frame.place = place;
-  return frame;
+  return /** @type {ShownFrame} */ (frame);
 }
 
-/** Of a scene without a mesh the weights alone. */
+/**
+ * Of a scene without a mesh the weights alone.
+ * @type {(place: Place) => Promise<ShownFrame>}
+ */
 async function askWeights(place) {
   const [{ weights, texture_weights: textureWeights }] = await getJson('weights', { at: place });
   return { place, weights, textureWeights, shape: 0, revision: store.state.revisions.weights, inverted: 0, order: [], layers: [] };
@@ -63,7 +80,10 @@ export function wantFrame() {
   queueMicrotask(ask);
 }
 
-/** Resolves when what is shown is where the probe is. */
+/**
+ * Resolves when what is shown is where the probe is.
+ * @type {() => Promise<void>}
+ */
 export function settled() {
   if (!wanted && !asking) return Promise.resolve();
   return new Promise((done) => waiting.push(done));
@@ -88,7 +108,10 @@ on('view', (changes) => {
 // Outlines for a smaller picture are too coarse for a larger one.
 on('drawn', () => store.pixel < asked && wantFrame());
 
-/** Frames of poses or places, for what lies behind the picture; `thin`: with outlines that are as fine as can be seen. */
+/**
+ * Frames of poses or places, for what lies behind the picture; `thin`: with outlines that are as fine as can be seen.
+ * @type {(name: 'poses' | 'at' | 'weights', values: (string | Place)[], thin?: boolean) => Promise<Frame[]>}
+ */
 export async function framesOf(name, values, thin = true) {
   if (values.length === 0 || !(store.state?.revisions.shape > 0)) return [];
   const search = values.map((value) => `${name}=${value}`).join('&');

@@ -1,6 +1,12 @@
+// @ts-check
 // Boxes and areas of points x, y, x, y.
 
-/** The corners of the box around points. */
+/** @import { Flat } from './answers.js' */
+
+/**
+ * The corners of the box around points.
+ * @type {(points: Flat) => [number[], number[]]}
+ */
 export function extent(points) {
   const [low, high] = [[Infinity, Infinity], [-Infinity, -Infinity]];
   for (let k = 0; k < points.length; k++) {
@@ -10,7 +16,10 @@ export function extent(points) {
   return [low, high];
 }
 
-/** The box around several lists of points. */
+/**
+ * The box around several lists of points.
+ * @type {(lists: Flat[]) => [number[], number[]]}
+ */
 export function extentOfAll(lists) {
   const boxes = lists.map(extent);
   return [
@@ -19,12 +28,16 @@ export function extentOfAll(lists) {
   ];
 }
 
+/** @type {(points: Flat) => number} */
 export function diagonal(points) {
   const [low, high] = extent(points);
   return Math.hypot(high[0] - low[0], high[1] - low[1]);
 }
 
-/** Twice the area of a ring of vertices, with its sign. */
+/**
+ * Twice the area of a ring of vertices, with its sign.
+ * @type {(ring: Flat, points: Flat) => number}
+ */
 export function ringArea(ring, points) {
   let area = 0;
   for (let k = 0; k < ring.length; k++) {
@@ -34,16 +47,23 @@ export function ringArea(ring, points) {
   return area;
 }
 
-/** Twice the area of a triangle, negative where it is turned over. */
+/**
+ * Twice the area of a triangle, negative where it is turned over.
+ * @type {(points: Flat, a: number, b: number, c: number) => number}
+ */
 function doubledArea(points, a, b, c) {
   const x = points[2 * a];
   const y = points[2 * a + 1];
   return (points[2 * b] - x) * (points[2 * c + 1] - y) - (points[2 * b + 1] - y) * (points[2 * c] - x);
 }
 
+/** @type {(corners: Uint32Array, points: Flat) => boolean} */
 export const isUpright = ([a, b, c], points) => doubledArea(points, a, b, c) > 0;
 
-/** The area of the triangles that are not turned over. */
+/**
+ * The area of the triangles that are not turned over.
+ * @type {(triangles: Uint32Array, points: Flat) => number}
+ */
 export function trianglesArea(triangles, points) {
   let doubled = 0;
   for (let t = 0; t < triangles.length; t += 3) doubled += Math.max(0, doubledArea(points, triangles[t], triangles[t + 1], triangles[t + 2]));

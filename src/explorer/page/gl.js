@@ -1,26 +1,36 @@
+// @ts-check
 // WebGL2, as far as drawing puppets needs it.
 
+/** @typedef {{ made: WebGLProgram, at: Record<string, WebGLUniformLocation | null> }} Program A program, and its uniforms by name. */
+
+/** @typedef {WebGL2RenderingContext} Gl */
+
+/** @type {(gl: Gl, vertex: string, fragment: string) => Program} */
 export function program(gl, vertex, fragment) {
   const made = gl.createProgram();
-  for (const [kind, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
-    const shader = gl.createShader(kind);
+  for (const [kind, source] of /** @type {[number, string][]} */ ([[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])) {
+    const shader = /** @type {WebGLShader} */ (gl.createShader(kind));
     gl.shaderSource(shader, `#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n${source}`);
     gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) throw new Error(gl.getShaderInfoLog(shader));
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) throw new Error(String(gl.getShaderInfoLog(shader)));
     gl.attachShader(made, shader);
   }
   gl.linkProgram(made);
-  if (!gl.getProgramParameter(made, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(gl.getProgramInfoLog(made));
+  if (!gl.getProgramParameter(made, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(String(gl.getProgramInfoLog(made)));
+  /** @type {Program['at']} */
   const at = {};
   const count = gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS) ?? 0;
   for (let k = 0; k < count; k++) {
-    const { name } = gl.getActiveUniform(made, k);
+    const { name } = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(made, k));
     at[name] = gl.getUniformLocation(made, name);
   }
   return { made, at };
 }
 
-/** A texture without levels and with nothing in it. */
+/**
+ * A texture without levels and with nothing in it.
+ * @type {(gl: Gl, format: number, width: number, height: number) => WebGLTexture}
+ */
 export function texture(gl, format, width, height) {
   const made = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, made);
@@ -30,7 +40,10 @@ export function texture(gl, format, width, height) {
   return made;
 }
 
-/** A picture as a texture with levels; which one is used is said when it is. */
+/**
+ * A picture as a texture with levels; which one is used is said when it is.
+ * @type {(gl: Gl, bitmap: ImageBitmap) => WebGLTexture}
+ */
 export function pictureTexture(gl, bitmap) {
   const made = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, made);

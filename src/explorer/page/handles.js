@@ -1,18 +1,32 @@
+// @ts-check
 // Dragging the drawing itself: along the plane (inverse posing), or away from it, by handles, as a new pose.
-import { postJson, postWords } from './api.js';
+import { postJson, postWords, problemOf } from './api.js';
 import { follow, h, s, set } from './dom.js';
 import { framesOf } from './frames.js';
 import { onMesh, partsIn, placed } from './located.js';
 import { drawingView, toDrawing, toStage } from './view.js';
-import { edit, emit, moveTo, on, rounded, store } from './state.js';
+import { edit, emit, moveTo, notYet, on, rounded, store } from './state.js';
 
-let stage = null;
-let overlay = null;
-/** Of the pose that is bent: where they were on its drawing, and where they are. */
+/** @import { Flat, Frame, Handle, Place } from './answers.js' */
+/** @import { MeshPoint } from './located.js' */
+
+/** @typedef {MeshPoint & { outside: number }} Carrier A point of an outline; it may be that far outside of its triangle. */
+
+/** @type {HTMLElement} */
+let stage = notYet();
+/** @type {SVGSVGElement} */
+let overlay = notYet();
+/**
+ * Of the pose that is bent: where they were on its drawing, and where they are.
+ * @type {Handle[]}
+ */
 let handles = [];
+/** @type {{ anchor: MeshPoint, layer: number, to: Place } | null} */
 let reaching = null;
-let bar = null;
+/** @type {HTMLElement} */
+let bar = notYet();
 
+/** @type {(on_stage: HTMLElement) => void} */
 export function attachHandles(on_stage) {
   stage = on_stage;
   overlay = s('svg', { class: 'overlay', 'aria-hidden': 'true' });
@@ -20,12 +34,16 @@ export function attachHandles(on_stage) {
   stage.append(overlay, bar);
 }
 
+/** @type {(event: PointerEvent) => Place} */
 function under(event) {
   const box = stage.getBoundingClientRect();
   return toDrawing([event.clientX - box.left, event.clientY - box.top]);
 }
 
-/** A press on the picture. */
+/**
+ * A press on the picture.
+ * @type {(event: PointerEvent) => void}
+ */
 export function pictureDrag(event) {
   if (!store.frame) return;
   if (store.view.tool === 'bend') return bendPress(event);
@@ -34,12 +52,14 @@ export function pictureDrag(event) {
 
 // Inverse posing.
 
+/** @type {(event: PointerEvent) => void} */
 function reach(event) {
   const from = under(event);
   const hit = layerUnder(from);
-  if (hit === null) return;
-  const anchor = onLayer(hit, from);
+  const anchor = hit === null ? null : onLayer(hit, from);
+  if (hit === null || !anchor) return;
   const begun = store.place.slice();
+  /** @type {Place | null} */
   let wanted = null;
   let asking = false;
   const ask = async () => {
@@ -51,7 +71,7 @@ function reach(event) {
       const answer = await postJson('reach', { layer: hit, at: begun, start: store.place, points: [{ from, to }], provider: store.view.compare?.provider ?? null });
       if (reaching) moveTo(answer.at.map((v) => rounded(v)));
     } catch (error) {
-      emit('refused', error.problem ?? { message: error.message });
+      emit('refused', problemOf(error));
       wanted = null;
     }
     asking = false;
@@ -64,36 +84,52 @@ function reach(event) {
       drawHandles();
       return;
     }
-    reaching.to = under(next);
-    wanted = reaching.to;
+    const to = under(next);
+    if (reaching) reaching.to = to;
+    wanted = to;
     ask();
     drawHandles();
   });
 }
 
-/** The foremost layer with a triangle under a place of the drawing. */
+/**
+ * The foremost layer with a triangle under a place of the drawing.
+ * @type {(place: Place) => number | null}
+ */
 function layerUnder(place) {
   for (const k of store.frame.order.slice().reverse()) if (onLayer(k, place)) return k;
   return null;
 }
 
-/** The point of a layer's mesh under a place. */
+/**
+ * The point of a layer's mesh under a place.
+ * @type {(layer: number, place: Place, points?: Flat) => MeshPoint | null}
+ */
 const onLayer = (layer, place, points = store.frame.layers[layer].positions) => onMesh(store.meshes[layer].triangles, points, place);
 
 // A new pose by handles: on the drawing of the pose that is chosen, or the nearest.
 
+/** @type {() => number} */
 function basePose() {
   if (store.pose !== null) return store.pose;
   const weights = Array.from(store.frame?.weights ?? [1]);
   return weights.indexOf(Math.max(...weights));
 }
 
+/** @type {(pose: number) => number} */
 const layerPose = (pose) => store.puppet.layers[store.layer].poses.indexOf(pose);
 
-let basis = null;
-/** The bent pose whose handles are moved; null: a new one. */
+/** The pose that is bent, or whose copy is; -1 if there is none. */
+let basis = -1;
+/**
+ * The bent pose whose handles are moved; null: a new one.
+ * @type {string | null}
+ */
 let editing = null;
-/** A layer, a ring: how the outline of the pose is carried by the mesh. */
+/**
+ * A layer, a ring: how the outline of the pose is carried by the mesh.
+ * @type {Carrier[][][]}
+ */
 let edges = [];
 /** Shows the pose that is going to be bent. */
 async function beginBend() {
@@ -110,7 +146,7 @@ async function beginBend() {
   edges = [];
   const own = layerPose(basis);
   if (own < 0) {
-    basis = null;
+    basis = -1;
     emit('refused', { message: `the layer ${store.puppet.layers[store.layer].name} is not in this pose` });
     return;
   }
@@ -120,12 +156,16 @@ async function beginBend() {
   await deform();
 }
 
-/** The points of a ring as parts of the triangles that they lie in, or nearest to. */
+/**
+ * The points of a ring as parts of the triangles that they lie in, or nearest to.
+ * @type {(layer: number, points: Flat, ring: Flat) => Carrier[]}
+ */
 function carriers(layer, points, ring) {
   const { triangles } = store.meshes[layer];
   const carried = [];
   for (let k = 0; k < ring.length; k += 2) {
-    let best = { outside: Infinity };
+    /** @type {Carrier} */
+    let best = { corners: [], parts: [], outside: Infinity };
     for (let t = 0; t < triangles.length && best.outside > 0; t += 3) {
       const corners = [triangles[t], triangles[t + 1], triangles[t + 2]];
       const parts = partsIn(corners, points, ring[k], ring[k + 1]);
@@ -137,6 +177,7 @@ function carriers(layer, points, ring) {
   return carried;
 }
 
+/** @type {Float32Array | null} */
 let latest = null;
 const shownBent = () => latest ?? store.meshes[store.layer].poses[layerPose(basis)];
 
@@ -162,7 +203,7 @@ async function deform() {
     latest = positions;
     emit('bent', bentFrame(positions, inverted));
   } catch (error) {
-    emit('refused', error.problem ?? { message: error.message });
+    emit('refused', problemOf(error));
   }
   deforming = false;
   if (again) {
@@ -171,11 +212,15 @@ async function deform() {
   }
 }
 
-/** A frame of one pose, with one layer's vertices elsewhere. */
+/**
+ * A frame of one pose, with one layer's vertices elsewhere.
+ * @type {(positions: Float32Array, inverted: number) => Frame}
+ */
 function bentFrame(positions, inverted) {
+  /** @type {(count: number, index: number) => Float32Array} */
   const single = (count, index) => Float32Array.from({ length: count }, (_, k) => Number(k === index));
   return {
-    order: store.frame.order, inverted, place: store.place, weights: store.frame.weights,
+    ...store.frame, inverted, place: store.place,
     layers: store.puppet.layers.map((layer, k) => {
       const own = layer.poses.indexOf(basis);
       const points = k === store.layer ? positions : store.meshes[k].poses[Math.max(own, 0)];
@@ -188,8 +233,9 @@ function bentFrame(positions, inverted) {
   };
 }
 
+/** @type {(event: PointerEvent) => void} */
 function bendPress(event) {
-  if (basis === null) return;
+  if (basis < 0) return;
   const at = under(event);
   const view = drawingView();
   let handle = handles.find(({ to }) => Math.hypot(...toStage(to, view).map((v, d) => v - toStage(at, view)[d])) < 10);
@@ -230,6 +276,7 @@ async function keep() {
 export function drawHandles() {
   if (!overlay) return;
   const view = drawingView();
+  /** @type {SVGElement[]} */
   const made = [];
   if (reaching) {
     const [a, b] = [toStage(placed(reaching.anchor, store.frame.layers[reaching.layer].positions), view), toStage(reaching.to, view)];
@@ -241,6 +288,7 @@ export function drawHandles() {
   if (store.view.tool === 'bend') drawBar();
 }
 
+/** @type {(name: string, at: Place, r: number) => SVGElement} */
 const dot = (name, [cx, cy], r) => set(s('circle', { class: name }), { cx, cy, r });
 
 let said = '';

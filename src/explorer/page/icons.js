@@ -1,6 +1,8 @@
+// @ts-check
 // The page's icons: strokes on a grid of 16, in the colour of the text around them.
 import { s } from './dom.js';
 
+/** @type {Record<string, string[]>} */
 const PATHS = {
   undo: ['M6 3.5 2.5 7 6 10.5', 'M2.5 7h7a3.5 3.5 0 0 1 0 7H7'],
   redo: ['M10 3.5 13.5 7 10 10.5', 'M13.5 7h-7a3.5 3.5 0 0 0 0 7H9'],
@@ -38,7 +40,10 @@ const PATHS = {
   pseudo: ['M2.5 13.5 11 5', 'M6.5 4.6h4.9v4.9'],
 };
 
-/** An icon; what it stands for is said by the label of what holds it. */
+/**
+ * An icon; what it stands for is said by the label of what holds it.
+ * @type {(name: string) => SVGSVGElement}
+ */
 export function icon(name) {
   const filled = ['play', 'record', 'stop'].includes(name);
   return s('svg', { class: `icon${filled ? ' filled' : ''}`, viewBox: '0 0 16 16', 'aria-hidden': 'true', focusable: 'false' },

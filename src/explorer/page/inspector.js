@@ -1,9 +1,16 @@
+// @ts-check
 // The inspector: the scene's settings, its landmarks, keys and problems, one tab each.
-import { byId, h } from './dom.js';
+import { byId, focused, found, h } from './dom.js';
 import { iconButton, menu, numberField, row, segments, slider } from './controls.js';
 import { icon } from './icons.js';
 import { readingPanel } from './reading.js';
 import { choosePose, Drag, edit, look, moveTo, on, onChange, rounded, store } from './state.js';
+
+/** @import { Op, Problem } from './answers.js' */
+/** @import { Child, Updated } from './dom.js' */
+/** @import { Comparison } from './state.js' */
+
+/** @typedef {NonNullable<Problem['where']>} Where */
 
 const root = byId('inspector');
 const TABS = [['scene', 'Scene'], ['landmarks', 'Landmarks'], ['keys', 'Keys'], ['problems', 'Problems']];
@@ -19,37 +26,47 @@ list.addEventListener('keydown', (event) => {
   event.preventDefault();
   event.stopPropagation();
   const next = tabs[(tabs.findIndex((tab) => tab.dataset.tab === current) + by + tabs.length) % tabs.length];
-  showTab(next.dataset.tab);
+  showTab(next.dataset.tab ?? current);
   next.focus();
 });
 const panels = Object.fromEntries(TABS.map(([name]) => [name, h('div', { class: 'panel', role: 'tabpanel', id: `panel-${name}`, 'aria-labelledby': `tab-${name}`, tabindex: '-1' })]));
 root.append(list, ...Object.values(panels));
 
+/** @type {(name: string) => void} */
 export function showTab(name) {
   current = name;
   for (const tab of tabs) {
     const chosen = tab.dataset.tab === name;
     tab.setAttribute('aria-selected', String(chosen));
     tab.tabIndex = chosen ? 0 : -1;
-    panels[tab.dataset.tab].classList.toggle('hidden', !chosen);
+    panels[tab.dataset.tab ?? name].classList.toggle('hidden', !chosen);
   }
 }
 showTab('scene');
 
-const section = (title, ...children) => h('section', { class: 'section' }, h('h3', {}, title), children);
+/** @type {(title: string, ...children: Child[]) => HTMLElement} */
+const section = (title, ...children) => h('section', { class: 'section' }, h('h3', {}, title), ...children);
+/** @type {(table: string, key: string, value: unknown) => Promise<unknown>} */
 const setting = (table, key, value) => edit([{ op: 'set', table, key, value }], `set ${key.replaceAll('_', ' ')}`);
 
 // The scene's settings. Built once a scene; afterwards only values change.
 
+/** @type {Updated[]} */
 const updated = [];
+/** @type {<C extends Updated>(control: C) => C} */
 const live = (control) => {
   updated.push(control);
   return control;
 };
 
-/** A slider that shows its effect while it moves, and becomes one edit. */
+/**
+ * A slider that shows its effect while it moves, and becomes one edit.
+ * @type {(label: string, range: { min: number, max: number, step: number }, value: () => number, table: string, key: string) => HTMLElement}
+ */
 function dragged(label, range, value, table, key) {
+  /** @type {Drag | null} */
   let drag = null;
+  /** @type {(value: number) => Op[]} */
   const op = (v) => [{ op: 'set', table, key, value: rounded(v) }];
   return live(slider(label, range, value, (v) => (drag ??= new Drag(`set ${key}`)).to(op(v)), (v) => {
     if (drag) drag.end(op(v));
@@ -61,8 +78,10 @@ function dragged(label, range, value, table, key) {
 function buildScene() {
   const { scene } = store;
   updated.length = 0;
+  /** @type {() => Partial<NonNullable<typeof scene.pose_space>>} */
   const space = () => store.scene.pose_space ?? {};
   const radial = live(menu('Radial function', [['b-spline', 'B-spline'], ['thin-plate', 'Thin plate']], () => space().radial, (v) => setting('pose_space', 'radial', v)));
+  /** @type {(HTMLElement | null)[]} */
   const children = [
     problemsOf('file', 'space'),
     readingPanel,
@@ -82,7 +101,7 @@ function buildScene() {
       compareSection()),
     scene.dimension === 2 ? pseudoSection() : null,
   ];
-  panels.scene.replaceChildren(...children.filter(Boolean));
+  panels.scene.replaceChildren(...children.filter((part) => part !== null));
 }
 
 /** SVG drawings can be carried as curves, which are shown where the probe rests. */
@@ -95,10 +114,11 @@ function drawingRow() {
 // The pose that is looked at.
 
 function poseSection() {
-  const pose = store.scene.poses[store.pose];
+  const index = store.pose ?? -1;
+  const pose = store.scene.poses[index];
   if (!pose) return null;
-  const place = pose.at.map((_, d) => live(numberField(`${pose.name}, ${'xyz'[d] ?? d}`, () => store.scene.poses[store.pose]?.at[d] ?? 0,
-    (value) => edit([{ op: 'move_pose', pose: pose.name, at: store.scene.poses[store.pose].at.map((v, k) => (k === d ? value : v)) }], `move pose '${pose.name}'`))));
+  const place = pose.at.map((_, d) => live(numberField(`${pose.name}, ${'xyz'[d] ?? d}`, () => store.scene.poses[store.pose ?? -1]?.at[d] ?? 0,
+    (value) => edit([{ op: 'move_pose', pose: pose.name, at: store.scene.poses[store.pose ?? -1].at.map((v, k) => (k === d ? value : v)) }], `move pose '${pose.name}'`))));
   const own = section(`Pose ${pose.name}`,
     row('Place', ...place),
     row('Mirrored', h('input', { type: 'checkbox', 'aria-label': 'Mirrored', checked: pose.mirror === true, disabled: pose.kind !== 'drawn', onchange: (event) => edit([{ op: 'set_pose', pose: pose.name, key: 'mirror', value: event.target.checked }], `mirror pose '${pose.name}'`) })),
@@ -114,9 +134,12 @@ function poseSection() {
 
 // A and B.
 
+/** @type {Comparison} */
 let other = { provider: 'rbf' };
+/** @type {keyof Comparison} */
 let compared = 'provider';
 
+/** @type {(shown: boolean) => void} */
 export function compare(shown) {
   look({ compare: shown ? { ...other } : null });
 }
@@ -125,23 +148,26 @@ function compareSection() {
   const what = menu('What B changes', [['provider', 'Provider'], ['stretch', 'Stretch'], ['sharpness', 'Sharpness']], () => compared, (value) => {
     compared = value;
     const own = store.scene;
-    other = {
-      provider: { provider: own.pose_space.provider === 'rbf' ? 'biharmonic' : 'rbf' },
-      stretch: { stretch: own.blend.stretch === 'log' ? 'linear' : 'log' },
-      sharpness: { sharpness: own.texture.sharpness > 0.5 ? 0 : 1 },
-    }[value];
+    /** @type {Record<keyof Comparison, Comparison>} */
+    const others = {
+      provider: { provider: own.pose_space?.provider === 'rbf' ? 'biharmonic' : 'rbf' },
+      stretch: { stretch: own.blend?.stretch === 'log' ? 'linear' : 'log' },
+      sharpness: { sharpness: (own.texture?.sharpness ?? 0) > 0.5 ? 0 : 1 },
+    };
+    other = others[value];
     if (store.view.compare) compare(true);
     draw();
   });
   const values = {
     provider: () => segments('Provider of B', [['biharmonic', 'Biharmonic'], ['rbf', 'Radial']], () => other.provider, (v) => change({ provider: v })),
     stretch: () => segments('Stretch of B', [['linear', 'Linear'], ['limited', 'Limited'], ['log', 'Log']], () => other.stretch, (v) => change({ stretch: v })),
-    sharpness: () => slider('B', { min: 0, max: 1, step: 0.01 }, () => other.sharpness, (v) => change({ sharpness: v }), (v) => change({ sharpness: v })),
+    sharpness: () => slider('B', { min: 0, max: 1, step: 0.01 }, () => other.sharpness ?? 0, (v) => change({ sharpness: v }), (v) => change({ sharpness: v })),
   };
   const place = h('div', {});
+  /** @type {(value: Comparison) => void} */
   const change = (value) => {
     other = value;
-    place.firstChild.update();
+    /** @type {(ChildNode & Updated) | null} */ (place.firstChild)?.update();
     if (store.view.compare) compare(true);
   };
   const draw = () => place.replaceChildren(values[compared]());
@@ -173,13 +199,14 @@ function buildKeys() {
   const { animation } = store.scene;
   if (!animation) return panels.keys.replaceChildren(h('p', { class: 'empty' }, 'There is no animation.'));
   const keys = animation.keys.map((key) => ({ time: key.time, at: key.at.slice() }));
-  const closes = animation.loop && keys.length > 2 && keys[0].at.join() === keys.at(-1).at.join();
+  const closes = animation.loop && keys.length > 2 && keys[0].at.join() === keys[keys.length - 1].at.join();
+  /** @type {(label: string) => Promise<unknown>} */
   const changed = (label) => edit([{ op: 'set_keys', keys: keys.slice().sort((a, b) => a.time - b.time) }], label);
   const rows = keys.map((key, index) => h('tr', {},
     h('td', {}, numberField(`Time of key ${index + 1}`, () => key.time, (value) => { key.time = value; changed('move a key'); }, { digits: 3, step: 0.05 })),
     ...key.at.map((_, d) => h('td', {}, numberField(`${'xyz'[d] ?? d} of key ${index + 1}`, () => key.at[d], (value) => {
       // A loop that ends where it begins still does.
-      if (closes && (index === 0 || index === keys.length - 1)) [keys[0], keys.at(-1)].forEach((end) => (end.at[d] = value));
+      if (closes && (index === 0 || index === keys.length - 1)) [keys[0], keys[keys.length - 1]].forEach((end) => (end.at[d] = value));
       key.at[d] = value;
       changed('move a key');
     }))),
@@ -203,12 +230,16 @@ function buildKeys() {
 
 // Problems.
 
-/** The problems that belong somewhere, as they are shown there. */
+/**
+ * The problems that belong somewhere, as they are shown there.
+ * @type {(where: Where, also?: Where | null, name?: string | null) => HTMLElement | null}
+ */
 export function problemsOf(...[where, also = null, name = null]) {
-  const own = (store.state?.problems ?? store.scene?.problems ?? []).filter((problem) => (problem.where === where || (also && problem.where === also)) && (!name || problem[where] === name));
+  const own = (store.state?.problems ?? store.scene?.problems ?? []).filter((problem) => (problem.where === where || (also && problem.where === also)) && (!name || problem[/** @type {'pose' | 'landmark'} */ (where)] === name));
   return own.length > 0 ? h('div', { class: 'problems' }, own.map(problemItem)) : null;
 }
 
+/** @type {(problem: Problem) => HTMLElement} */
 function problemItem(problem) {
   const where = [problem.landmark && `landmark ${problem.landmark}`, problem.pose && `pose ${problem.pose}`, problem.layer && `layer ${problem.layer}`, problem.line && `line ${problem.line}`].filter(Boolean).join(', ');
   return h('div', { class: 'problem' }, icon('warn'), h('div', {}, h('p', {}, problem.message), where && h('p', { class: 'faint small' }, where)));
@@ -227,7 +258,7 @@ function buildProblems() {
 // Landmarks: filled by landmarks.js.
 export const landmarksPanel = panels.landmarks;
 
-const busy = () => panels.scene.contains(document.activeElement) && document.activeElement.matches('input[type="range"], select');
+const busy = () => panels.scene.contains(focused()) && focused()?.matches('input[type="range"], select');
 let shape = '';
 // Landmarks have their own panel.
 const besides = () => [store.pose, store.state?.problems, { ...store.scene, landmarks: null, revision: null, notes: null }];
@@ -236,21 +267,22 @@ onChange('scene pose', besides, () => {
   const now = JSON.stringify([store.pose, store.scene.poses.map((pose) => [pose.name, pose.mirror]), store.scene.pseudo_poses, store.scene.dimension]);
   if (now !== shape || !busy()) {
     shape = now;
-    const focused = document.activeElement?.getAttribute('aria-label');
-    const inside = panels.scene.contains(document.activeElement);
+    const label = focused()?.getAttribute('aria-label');
+    const inside = panels.scene.contains(focused());
     const scrolled = panels.scene.scrollTop;
     buildScene();
     panels.scene.scrollTop = scrolled;
-    if (inside && focused) panels.scene.querySelector(`[aria-label="${CSS.escape(focused)}"]`)?.focus();
+    if (inside && label) found(panels.scene, `[aria-label="${CSS.escape(label)}"]`)?.focus();
   } else {
     updated.forEach((control) => control.update());
   }
 });
 onChange('scene', () => [store.scene.animation, store.state?.problems], () => {
-  if (!panels.keys.contains(document.activeElement) || document.activeElement.tagName === 'BUTTON') return buildKeys();
-  const label = document.activeElement.getAttribute('aria-label');
+  const active = focused();
+  if (!active || !panels.keys.contains(active) || active.tagName === 'BUTTON') return buildKeys();
+  const label = active.getAttribute('aria-label');
   buildKeys();
-  panels.keys.querySelector(`[aria-label="${CSS.escape(label ?? '')}"]`)?.focus();
+  found(panels.keys, `[aria-label="${CSS.escape(label ?? '')}"]`)?.focus();
 });
 on('state scene', buildProblems);
 on('view', () => updated.forEach((control) => control.update()));

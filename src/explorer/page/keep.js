@@ -1,3 +1,4 @@
+// @ts-check
 // The dialog that names a folder for a scene that was begun for drawings.
 import { postJson } from './api.js';
 import { iconButton } from './controls.js';
@@ -27,7 +28,7 @@ async function keep() {
     dialog.close();
     toast('Saved', { detail: store.scene.file });
   } catch (error) {
-    said.textContent = error.message;
+    said.textContent = /** @type {Error} */ (error).message;
   }
 }
 

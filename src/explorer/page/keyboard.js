@@ -1,5 +1,6 @@
+// @ts-check
 // Keys that work wherever the focus is, but in fields; and the list of them.
-import { h } from './dom.js';
+import { h, targetOf } from './dom.js';
 import { iconButton } from './controls.js';
 import { copyCommand, openExport } from './export.js';
 import { arm, isArmed } from './recorder.js';
@@ -10,9 +11,13 @@ import { actualSize, fit, zoomBy } from './view.js';
 import { asked, look, store } from './state.js';
 import { escapeGesture, play, stepFrame } from './timeline.js';
 
+/** @type {<T>(values: T[], value: T) => T} */
 const cycle = (values, value) => values[(values.indexOf(value) + 1) % values.length];
 
-/** [keys as they are shown, what they do, match, action] */
+/**
+ * [keys as they are shown, what they do, match, action]
+ * @type {[string[], string, ((event: Pick<KeyboardEvent, 'key' | 'code'>) => boolean) | null, ((event: KeyboardEvent) => void)?][]}
+ */
 const KEYS = [
   [['←', '↑', '↓', '→'], 'Move the probe; with Shift, finely', null],
   [['1', '…', '9'], 'Go to a pose', null],
@@ -39,7 +44,7 @@ const KEYS = [
   [['Ctrl', 'Z'], 'Undo; with Shift, redo', null],
   [['?'], 'This list', (e) => e.key === '?', () => openKeys()],
 ];
-KEYS.find(([keys]) => keys[1] === 'V')[0].shift();
+KEYS.find(([keys]) => keys[1] === 'V')?.[0].shift();
 
 const dialog = h('dialog', { class: 'dialog keys-dialog', 'aria-label': 'Keys' },
   h('header', {}, h('h2', {}, 'Keys'), h('span', { class: 'grow' }), iconButton('close', 'Close', () => dialog.close())),
@@ -49,23 +54,24 @@ dialog.addEventListener('click', (event) => event.target === dialog && dialog.cl
 
 export const openKeys = () => dialog.showModal();
 
+/** @type {(target: HTMLElement) => Element | null} */
 const inField = (target) => target.closest?.('input:not([type="range"], [type="checkbox"]), select, textarea, dialog');
 
 window.addEventListener('keydown', (event) => {
   const modified = event.ctrlKey || event.metaKey;
-  if (modified && !event.altKey && ['z', 'y', 'Z'].includes(event.key) && !document.querySelector('dialog[open]') && event.target.type !== 'text') {
+  if (modified && !event.altKey && ['z', 'y', 'Z'].includes(event.key) && !document.querySelector('dialog[open]') && /** @type {HTMLInputElement} */ (event.target).type !== 'text') {
     event.preventDefault();
     const redo = event.key === 'y' || event.shiftKey;
     if (redo ? store.state?.redo : store.state?.undo) asked(redo ? 'redo' : 'undo', {});
     return;
   }
-  if (modified || event.altKey || inField(event.target) || !store.scene?.poses.length) return;
+  if (modified || event.altKey || inField(targetOf(event)) || !store.scene?.poses.length) return;
   if (event.key === 'Escape') {
     if (escapeMatches() || escapeGesture()) event.preventDefault();
     return;
   }
-  if (event.key === ' ' && event.target.closest('button:not(.probe), [role="tab"]')) return;
-  if (event.key === 'Enter' && !event.target.closest('button')) {
+  if (event.key === ' ' && targetOf(event).closest('button:not(.probe), [role="tab"]')) return;
+  if (event.key === 'Enter' && !targetOf(event).closest('button')) {
     addFresh();
     return;
   }
@@ -80,15 +86,16 @@ window.addEventListener('keydown', (event) => {
     return;
   }
   const digit = /^Digit([1-9])$/.exec(event.code);
-  if (digit && !event.shiftKey && store.scene.poses[digit[1] - 1]) {
-    goTo(store.scene.poses[digit[1] - 1]);
+  const numbered = digit && !event.shiftKey ? store.scene.poses[Number(digit[1]) - 1] : null;
+  if (numbered) {
+    goTo(numbered);
     return;
   }
   const bound = KEYS.find(([, , match]) => match?.({ key: event.key.length === 1 ? event.key.toLowerCase() : event.key, code: event.code }));
   if (!bound) return;
   event.preventDefault();
-  bound[3](event);
+  bound[3]?.(event);
 });
 window.addEventListener('keyup', (event) => {
-  if (event.key.toLowerCase() === 'b' && !inField(event.target) && store.view.compare) compare(false);
+  if (event.key.toLowerCase() === 'b' && !inField(targetOf(event)) && store.view.compare) compare(false);
 });

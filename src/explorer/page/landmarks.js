@@ -1,15 +1,19 @@
+// @ts-check
 // The list of landmarks: names, places as numbers, what would help.
 import { iconButton, numberField } from './controls.js';
-import { h } from './dom.js';
+import { focused, found, h } from './dom.js';
 import { landmarksPanel, problemsOf } from './inspector.js';
 import { choose, drawnPoses, match, ownLandmarks } from './match.js';
 import { edit, emit, look, on, rounded, store } from './state.js';
+
+/** @import { Landmark, PointLandmark } from './answers.js' */
 
 let listed = '';
 function drawList() {
   if (!store.scene) return;
   const { data, chosen } = match;
   const drawn = data ? drawnPoses().length : null;
+  /** @type {(landmark: Landmark) => unknown[]} */
   const shown = ({ name, layer, path, at }) => [name, layer ?? 0, path, name === chosen ? at : Object.keys(at).length];
   const key = JSON.stringify([store.layer, chosen, store.scene.landmarks.map(shown), drawn, data?.suggestions, store.state?.problems, store.puppet?.layers.map((layer) => layer.name)]);
   if (key === listed) return;
@@ -28,20 +32,25 @@ function drawList() {
     return own ? h('div', { class: 'opened' }, item, problems, details(landmark)) : h('div', {}, item, problems);
   });
   const unplaced = (store.state?.problems ?? []).filter((problem) => problem.where === 'mapping');
+  /** @type {(pose: number) => string} */
   const nameOf = (pose) => data.poses.find((p) => p.pose === pose)?.name ?? data.poses[pose]?.name ?? '';
   const suggestions = (data?.suggestions ?? []).map(({ pose, from, to, cost }) => h('p', { class: 'small' }, `${nameOf(pose)}: between ${from + 1} and ${to + 1}`, h('span', { class: 'faint' }, ` (${cost.toFixed(1)})`)));
-  const focused = landmarksPanel.contains(document.activeElement) ? document.activeElement.getAttribute('aria-label') : null;
-  landmarksPanel.replaceChildren(...[
+  const active = focused();
+  const label = active && landmarksPanel.contains(active) ? active.getAttribute('aria-label') : null;
+  /** @type {(HTMLElement | null)[]} */
+  const sections = [
     h('section', { class: 'section' },
       several ? h('div', { class: 'row' }, h('span', { class: 'label' }, 'Layer'), layers) : null,
       h('p', { class: 'faint small' }, 'Open Matches and click on a drawing to add a landmark to all poses, or draw a line there.'),
       unplaced.length > 0 ? problemsOf('mapping') : null,
       h('div', { class: 'list' }, items)),
     suggestions.length > 0 ? h('section', { class: 'section' }, h('h3', {}, 'A landmark would help'), suggestions) : null,
-  ].filter(Boolean));
-  if (focused) landmarksPanel.querySelector(`[aria-label="${CSS.escape(focused)}"]`)?.focus();
+  ];
+  landmarksPanel.replaceChildren(...sections.filter((part) => part !== null));
+  if (label) found(landmarksPanel, `[aria-label="${CSS.escape(label)}"]`)?.focus();
 }
 
+/** @type {(landmark: Landmark) => HTMLElement} */
 function details(landmark) {
   const rename = h('input', { type: 'text', value: landmark.name, 'aria-label': 'Name of the landmark', onkeydown: (event) => event.stopPropagation(), onchange: async (event) => {
     const name = event.target.value.trim();
@@ -54,7 +63,9 @@ function details(landmark) {
   return h('div', { class: 'details' }, rename, ...poses);
 }
 
+/** @type {(landmark: PointLandmark, pose: string, axis: number) => HTMLElement} */
 function coordinate(landmark, pose, axis) {
+  /** @type {(value: number) => void} */
   const move = (value) => {
     const at = landmark.at[pose].map((old, k) => (k === axis ? rounded(value, 2) : old));
     edit([{ op: 'move_landmark', landmark: landmark.name, at: { [pose]: at } }], `move landmark '${landmark.name}'`, `landmark ${landmark.name} ${pose}`);

@@ -1,6 +1,14 @@
+// @ts-check
 // Points on meshes: in which triangle a place lies, and where the same part of the triangle is in another embedding.
 
-/** How much of each corner a place is made of; not numbers where the triangle is flat. */
+/** @import { Flat, Place } from './answers.js' */
+
+/** @typedef {{ corners: number[], parts: number[] }} MeshPoint A point of a mesh: the vertices of its triangle, and how much of each it is made of. */
+
+/**
+ * How much of each corner a place is made of; not numbers where the triangle is flat.
+ * @type {(corners: ArrayLike<number> & Iterable<number>, points: Flat, x: number, y: number) => number[]}
+ */
 export function partsIn([a, b, c], points, x, y) {
   const [ax, ay] = [points[2 * a], points[2 * a + 1]];
   const [ux, uy, vx, vy] = [points[2 * b] - ax, points[2 * b + 1] - ay, points[2 * c] - ax, points[2 * c + 1] - ay];
@@ -9,7 +17,10 @@ export function partsIn([a, b, c], points, x, y) {
   return [1 - p - q, p, q];
 }
 
-/** The triangle that is seen at a place, which is the last one there, and the parts of its corners: {corners, parts}, or null. */
+/**
+ * The triangle that is seen at a place, which is the last one there, and the parts of its corners: {corners, parts}, or null.
+ * @type {(triangles: Uint32Array, points: Flat, place: Place) => MeshPoint | null}
+ */
 export function onMesh(triangles, points, [x, y]) {
   for (let t = triangles.length - 3; t >= 0; t -= 3) {
     const corners = triangles.subarray(t, t + 3);
@@ -19,12 +30,18 @@ export function onMesh(triangles, points, [x, y]) {
   return null;
 }
 
-/** Where a point of a mesh is in an embedding. */
+/**
+ * Where a point of a mesh is in an embedding.
+ * @type {(point: MeshPoint, points: Flat) => Place}
+ */
 export function placed({ corners, parts }, points) {
   return [0, 1].map((d) => corners.reduce((sum, v, k) => sum + parts[k] * points[2 * v + d], 0));
 }
 
-/** Where rings of points x, y cross a height. */
+/**
+ * Where rings of points x, y cross a height.
+ * @type {(rings: Flat[], y: number) => number[]}
+ */
 export function crossingsAt(rings, y) {
   const found = [];
   for (const ring of rings) {
@@ -36,5 +53,8 @@ export function crossingsAt(rings, y) {
   return found;
 }
 
-/** Whether a place lies inside rings of points x, y, by the even-odd rule. */
+/**
+ * Whether a place lies inside rings of points x, y, by the even-odd rule.
+ * @type {(rings: Flat[], place: Place) => boolean}
+ */
 export const isInside = (rings, [x, y]) => crossingsAt(rings, y).filter((crossing) => x < crossing).length % 2 === 1;

@@ -1,3 +1,4 @@
+// @ts-check
 // The page: its parts come alive by being imported, and hear of everything by events.
 import './theme.js';
 import './toasts.js';
@@ -31,6 +32,6 @@ try {
   document.documentElement.dataset.ready = 'true';
   if (new URLSearchParams(location.search).has('bench')) (await import('./bench.js')).measure();
 } catch (error) {
-  byId('stage').replaceChildren(h('p', { class: 'note' }, `The page cannot be opened: ${error.message}`));
+  byId('stage').replaceChildren(h('p', { class: 'note' }, `The page cannot be opened: ${/** @type {Error} */ (error).message}`));
   throw error;
 }

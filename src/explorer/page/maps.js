@@ -1,7 +1,15 @@
+// @ts-check
 // What can be seen below the poses in the plane: one pose's weight everywhere, or where the drawing breaks.
 import { getWords } from './api.js';
 import { store } from './state.js';
-import { h, s, set } from './dom.js';
+import { brushOf, brushOff, h, s, set } from './dom.js';
+
+/** @import { Words } from './api.js' */
+/** @import { PadView } from './plane.js' */
+/** @import { View } from './state.js' */
+
+/** @typedef {{ element: HTMLElement, show: (kind: View['map']) => void }} Legend */
+/** @typedef {{ key: string, kind: 'weight' | 'validity', words: Words, cells: number }} Known */
 
 const WEIGHT_CELLS = 72;
 const VALIDITY_CELLS = 28;
@@ -10,15 +18,19 @@ const EASY = 1.25;
 const HARD = 4;
 
 let asked = 0;
+/** @type {Known | null} */
 let known = null;
 
-/** Paints the map that is chosen. While one is asked for, the last one stays. */
+/**
+ * Paints the map that is chosen. While one is asked for, the last one stays.
+ * @type {(canvas: HTMLCanvasElement, view: PadView, caption: Legend) => Promise<void>}
+ */
 export async function paintMap(canvas, view, caption) {
   const kind = store.scene.dimension === 2 ? store.view.map : 'plain';
   caption.show(kind);
   if (kind === 'plain') {
     known = null;
-    canvas.getContext('2d').clearRect(0, 0, canvas.width, canvas.height);
+    brushOf(canvas).clearRect(0, 0, canvas.width, canvas.height);
     return;
   }
   const pixels = Math.round(view.side * devicePixelRatio);
@@ -41,16 +53,19 @@ export async function paintMap(canvas, view, caption) {
   else paintValidity(canvas, known);
 }
 
+/** @type {(name: string) => number[]} */
 const colour = (name) => {
   const text = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   return [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16));
 };
 
+/** @type {(canvas: HTMLCanvasElement, known: Known) => void} */
 function paintWeights(canvas, { words, cells }) {
   words.next = 2;
   const poses = words.u32();
   const values = words.f32s(cells * cells * poses);
   const pose = Math.min(store.pose ?? 0, poses - 1);
+  /** @type {(i: number, j: number) => number} */
   const at = (i, j) => values[(j * cells + i) * poses + pose];
   const [accent, warn, wrong] = [colour('--accent'), colour('--warn'), colour('--wrong')];
   const image = new ImageData(cells, cells);
@@ -62,7 +77,8 @@ function paintWeights(canvas, { words, cells }) {
     }
   }
   smooth(canvas, image);
-  const context = canvas.getContext('2d');
+  const context = brushOf(canvas);
+  /** @type {(colour: number[], alpha: number) => string} */
   const rgb = (c, alpha) => `rgb(${c.join(' ')} / ${alpha})`;
   context.lineWidth = devicePixelRatio;
   context.setLineDash([]);
@@ -72,24 +88,31 @@ function paintWeights(canvas, { words, cells }) {
   contour(context, canvas.width, cells, at, 1 + 1e-4, rgb(wrong, 0.95));
 }
 
+/** @type {(canvas: HTMLCanvasElement, image: ImageData) => void} */
 function smooth(canvas, image) {
   const small = new OffscreenCanvas(image.width, image.height);
-  small.getContext('2d').putImageData(image, 0, 0);
-  const context = canvas.getContext('2d');
+  brushOff(small).putImageData(image, 0, 0);
+  const context = brushOf(canvas);
   context.clearRect(0, 0, canvas.width, canvas.height);
   context.imageSmoothingQuality = 'high';
   context.drawImage(small, 0, 0, canvas.width, canvas.height);
 }
 
-/** Where a grid of values at cell centres crosses a level: one line a cell, by linear interpolation along its sides. */
+/**
+ * Where a grid of values at cell centres crosses a level: one line a cell, by linear interpolation along its sides.
+ * @type {(context: CanvasRenderingContext2D, pixels: number, cells: number, at: (i: number, j: number) => number, level: number, style: string) => void}
+ */
 function contour(context, pixels, cells, at, level, style) {
   const cell = pixels / cells;
+  /** @type {(i: number, j: number) => [number, number]} */
   const point = (i, j) => [(i + 0.5) * cell, (cells - j - 0.5) * cell];
   context.beginPath();
   for (let j = 0; j + 1 < cells; j++) {
     for (let i = 0; i + 1 < cells; i++) {
+      /** @type {[number, number][]} */
       const corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
       const values = corners.map(([a, b]) => at(a, b) - level);
+      /** @type {[number, number][]} */
       const crossings = [];
       for (let k = 0; k < 4; k++) {
         const [a, b] = [values[k], values[(k + 1) % 4]];
@@ -108,6 +131,7 @@ function contour(context, pixels, cells, at, level, style) {
   context.stroke();
 }
 
+/** @type {(canvas: HTMLCanvasElement, known: Known) => void} */
 function paintValidity(canvas, { words, cells }) {
   words.next = 2;
   const [good, warn, wrong] = [colour('--good'), colour('--warn'), colour('--wrong')];
@@ -124,18 +148,23 @@ function paintValidity(canvas, { words, cells }) {
     }
   }
   const small = new OffscreenCanvas(cells, cells);
-  small.getContext('2d').putImageData(image, 0, 0);
-  const context = canvas.getContext('2d');
+  brushOff(small).putImageData(image, 0, 0);
+  const context = brushOf(canvas);
   context.clearRect(0, 0, canvas.width, canvas.height);
   context.imageSmoothingEnabled = false;
   context.drawImage(small, 0, 0, canvas.width, canvas.height);
   context.imageSmoothingEnabled = true;
 }
 
-/** What the colours mean. */
+/**
+ * What the colours mean.
+ * @type {() => Legend}
+ */
 export function legend() {
   const element = h('div', { class: 'legend hidden', 'aria-live': 'polite' });
+  /** @type {(name: string) => SVGElement} */
   const swatch = (name) => s('svg', { class: `swatch ${name}`, viewBox: '0 0 10 10', 'aria-hidden': 'true' }, set(s('rect'), { width: 10, height: 10, rx: 2 }));
+  /** @type {{ [kind: string]: () => (string | Node)[] }} */
   const said = {
     weight: () => [h('b', {}, store.scene.poses[store.pose ?? 0]?.name ?? ''), swatch('accent'), 'weight', swatch('warn'), 'below 0', swatch('wrong'), 'above 1'],
     validity: () => [swatch('good'), 'sound', swatch('warn'), 'stretched', swatch('wrong'), 'folds'],

@@ -1,21 +1,28 @@
+// @ts-check
 // The pointer on the drawings: landmarks are chosen, dragged, and made; points, and lines of points.
-import { postJson } from './api.js';
-import { clamp, follow, h } from './dom.js';
+import { postJson, problemOf } from './api.js';
+import { clamp, follow, h, placeInSvg, targetOf } from './dom.js';
 import { icon } from './icons.js';
 import { choose, drawnPoses, match, placesOf } from './match.js';
 import { Drag, edit, emit, rounded, store } from './state.js';
 
+/** @import { Place } from './answers.js' */
+/** @import { Cell, FreshLine } from './match.js' */
+
 /** CSS pixels that a pointer may tremble while it clicks. */
 const TREMBLE = 3;
 
+/** @type {(event: MouseEvent, cell: Cell) => Place} */
 function placeUnder(event, cell) {
-  const matrix = cell.drawing.getScreenCTM().inverse();
-  const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix);
+  const point = placeInSvg(cell.drawing, event);
   const [left, top, w, h_] = cell.box;
   return [rounded(clamp(point.x, left, left + w), 2), rounded(clamp(point.y, top, top + h_), 2)];
 }
 
-/** A press on the drawing of a pose. */
+/**
+ * A press on the drawing of a pose.
+ * @type {(event: PointerEvent, cell: Cell) => void}
+ */
 export function press(event, cell) {
   if (event.button !== 0 || !cell.pose.drawn) return;
   event.preventDefault();
@@ -24,13 +31,17 @@ export function press(event, cell) {
     if (open === cell.pose.name) extend(cell, placeUnder(event, cell));
     return;
   }
-  const group = event.target.closest('.mark, .line');
+  /** @type {SVGElement | null} */
+  const group = targetOf(event).closest('.mark, .line');
   if (group?.classList.contains('line')) return dragLine(event, cell, group.dataset.landmark || null);
   if (group) return dragged(event, cell, group.dataset.landmark || null, (next) => placeUnder(next, cell));
   start(cell, placeUnder(event, cell));
 }
 
-/** The same from the keyboard, at a place: the next point of a line, the place of a new landmark on this pose, or a new one. */
+/**
+ * The same from the keyboard, at a place: the next point of a line, the place of a new landmark on this pose, or a new one.
+ * @type {(cell: Cell, at: Place) => void}
+ */
 export function put(cell, at) {
   const { fresh } = match;
   const pose = cell.pose.name;
@@ -42,30 +53,43 @@ export function put(cell, at) {
   } else start(cell, at);
 }
 
-/** The end of a line that is being drawn on this pose follows. */
+/**
+ * The end of a line that is being drawn on this pose follows.
+ * @type {(cell: Cell, at: Place) => boolean}
+ */
 export function trailTo(cell, at) {
-  const points = match.fresh?.open === cell.pose.name && match.fresh.at[cell.pose.name];
+  const { fresh } = match;
+  const points = fresh?.open === cell.pose.name && fresh.at[cell.pose.name];
   if (points) points[points.length - 1] = at;
   return Boolean(points);
 }
 
-/** A second press at once: takes a point out of a line, or ends one. True if it meant something here. */
+/**
+ * A second press at once: takes a point out of a line, or ends one. True if it meant something here.
+ * @type {(event: MouseEvent, cell: Cell) => boolean}
+ */
 export function pressTwice(event, cell) {
   if (match.fresh?.open) {
     close();
     return true;
   }
-  const group = event.target.closest('.mark, .line');
-  const node = event.target.closest('[data-node]');
-  if (node) removeNode(cell, group.dataset.landmark || null, Number(node.dataset.node));
+  /** @type {SVGElement | null} */
+  const group = targetOf(event).closest('.mark, .line');
+  /** @type {SVGElement | null} */
+  const node = targetOf(event).closest('[data-node]');
+  if (node) removeNode(cell, group?.dataset.landmark || null, Number(node.dataset.node));
   return Boolean(group);
 }
 
 // Landmarks that are there.
 
-/** Drags a point of a line; between two points, a new one. */
+/**
+ * Drags a point of a line; between two points, a new one.
+ * @type {(event: PointerEvent, cell: Cell, name: string | null) => void}
+ */
 function dragLine(event, cell, name) {
-  const node = event.target.closest('[data-node]');
+  /** @type {SVGElement | null} */
+  const node = targetOf(event).closest('[data-node]');
   const wasChosen = name === null || match.chosen === name;
   const points = pointsOf(cell, name);
   if (!points) return;
@@ -74,13 +98,19 @@ function dragLine(event, cell, name) {
   dragged(event, cell, name, (next) => [...points.slice(0, index), placeUnder(next, cell), ...points.slice(node ? index + 1 : index)]);
 }
 
+/** @type {(cell: Cell, name: string | null) => Place[] | undefined} */
 function pointsOf(cell, name) {
   const landmark = store.scene.landmarks.find((other) => other.name === name);
-  const points = name === null ? match.fresh?.at[cell.pose.name] : landmark && placesOf(landmark, cell.pose.name, cell.index)?.points;
+  const { fresh } = match;
+  const points = name !== null ? landmark && placesOf(landmark, cell.pose.name, cell.index)?.points
+    : fresh?.path ? fresh.at[cell.pose.name] : undefined;
   return points?.map((p) => p.map((v) => rounded(v, 2)));
 }
 
-/** The edge of a line that is nearest to a place. */
+/**
+ * The edge of a line that is nearest to a place.
+ * @type {(points: Place[], at: Place) => number}
+ */
 function segmentAt(points, [x, y]) {
   let [best, where] = [Infinity, 0];
   for (let k = 0; k + 1 < points.length; k++) {
@@ -92,19 +122,23 @@ function segmentAt(points, [x, y]) {
   return where;
 }
 
+/** @type {(cell: Cell, name: string | null, index: number) => void} */
 function removeNode(cell, name, index) {
   const points = pointsOf(cell, name);
   if (!points || points.length < 3) return;
   const at = points.filter((_, k) => k !== index);
   if (name === null) {
-    match.fresh.at[cell.pose.name] = at;
+    /** @type {FreshLine} */ (match.fresh).at[cell.pose.name] = at;
     emit('marks');
   } else {
     edit([{ op: 'move_landmark', landmark: name, at: { [cell.pose.name]: at } }], `change landmark '${name}'`);
   }
 }
 
-/** Follows the pointer; `placed(event)` is what the landmark's place on this pose then is. */
+/**
+ * Follows the pointer; `placed(event)` is what the landmark's place on this pose then is.
+ * @type {(event: PointerEvent, cell: Cell, name: string | null, placed: (event: PointerEvent) => Place | Place[]) => void}
+ */
 function dragged(event, cell, name, placed) {
   const start = [event.clientX, event.clientY];
   const drag = name === null ? null : new Drag(`move landmark '${name}'`);
@@ -126,7 +160,7 @@ function dragged(event, cell, name, placed) {
         });
       } else drag.to(ops);
     } else if (match.fresh) {
-      match.fresh.at[pose] = at;
+      /** @type {Record<string, Place | Place[]>} */ (match.fresh.at)[pose] = at;
     }
     emit('held');
   });
@@ -134,36 +168,50 @@ function dragged(event, cell, name, placed) {
 
 // New ones.
 
-/** A new line or point, as is chosen. */
+/**
+ * A new line or point, as is chosen.
+ * @type {(cell: Cell, at: Place) => void}
+ */
 function start(cell, at) {
   if (store.view.mark === 'line') begin(cell, at);
   else propose(cell, at);
 }
 
-/** Where the present match has a place of a pose, on all drawn poses; without a match, the same place. */
+/**
+ * Where the present match has a place of a pose, on all drawn poses; without a match, the same place.
+ * @type {(cell: Cell, at: Place) => Promise<Record<string, Place>>}
+ */
 async function carried(cell, at) {
   const drawn = drawnPoses();
   if (!(store.state.revisions.shape > 0)) return Object.fromEntries(drawn.map((name) => [name, at]));
   const answer = await postJson('carry', { layer: store.layer, pose: cell.pose.name, at });
-  const all = answer.poses.map((name, k) => [name, answer.at[k]]).filter(([name, place]) => drawn.includes(name) && place);
-  return Object.fromEntries(all.map(([name, place]) => [name, place.map((v) => rounded(v, 2))]));
+  const all = answer.poses.map((name, k) => ({ name, place: answer.at[k] ?? [] }));
+  const known = all.filter(({ name, place }) => drawn.includes(name) && place.length > 0);
+  return Object.fromEntries(known.map(({ name, place }) => [name, place.map((v) => rounded(v, 2))]));
 }
 
-/** A new point: where it would lie on all poses. */
+/**
+ * A new point: where it would lie on all poses.
+ * @type {(cell: Cell, at: Place) => Promise<void>}
+ */
 async function propose(cell, at) {
   match.chosen = null;
   try {
     match.fresh = { path: false, at: await carried(cell, at), open: null };
   } catch (error) {
-    emit('refused', error.problem ?? { message: error.message });
+    emit('refused', problemOf(error));
   }
   emit('marks');
 }
 
-/** A new line begins on one drawing. */
+/**
+ * A new line begins on one drawing.
+ * @type {(cell: Cell, at: Place) => void}
+ */
 function begin(cell, at) {
   match.chosen = null;
   match.fresh = { path: true, at: { [cell.pose.name]: [at, at] }, open: cell.pose.name, cell };
+  /** @type {(event: PointerEvent) => void} */
   const trail = (event) => {
     if (trailTo(cell, placeUnder(event, cell))) emit('held');
     else cell.drawing.removeEventListener('pointermove', trail);
@@ -172,9 +220,12 @@ function begin(cell, at) {
   emit('marks');
 }
 
-/** The next point; the last one follows the pointer. */
+/**
+ * The next point; the last one follows the pointer.
+ * @type {(cell: Cell, at: Place) => void}
+ */
 function extend(cell, at) {
-  const points = match.fresh.at[cell.pose.name];
+  const points = /** @type {FreshLine} */ (match.fresh).at[cell.pose.name];
   const before = points[points.length - 2];
   if (before[0] !== at[0] || before[1] !== at[1]) points.splice(points.length - 1, 1, at, at);
   emit('held');
@@ -182,7 +233,8 @@ function extend(cell, at) {
 
 /** The line is drawn: where it would lie on all poses. */
 async function close() {
-  const { open, cell, at } = match.fresh;
+  const { open, cell, at } = /** @type {Required<FreshLine>} */ (match.fresh);
+  if (open === null) return;
   // Without the point that follows the pointer.
   const points = at[open].slice(0, -1);
   if (points.length < 2) return;
@@ -192,7 +244,7 @@ async function close() {
     const lines = poses.map((name) => [name, name === open ? points : all.map((places) => places[name])]);
     match.fresh = { path: true, at: Object.fromEntries(lines), open: null };
   } catch (error) {
-    emit('refused', error.problem ?? { message: error.message });
+    emit('refused', problemOf(error));
   }
   emit('marks');
 }
@@ -216,7 +268,7 @@ export function drawTray() {
   hint.textContent = open ? 'Click from point to point; click twice to end the line.' : fresh.path ? 'Drag points, or the line between them; click a point twice to take it out.' : 'Drag the markers to where they belong.';
   [nameField, add].forEach((element) => element.classList.toggle('hidden', open));
   done.classList.toggle('hidden', !open);
-  done.disabled = open && fresh.at[fresh.open].length < 3;
+  done.disabled = Boolean(fresh.open) && fresh.at[fresh.open ?? ''].length < 3;
   add.textContent = fresh.path ? 'Add line' : 'Add landmark';
 }
 

@@ -1,7 +1,8 @@
+// @ts-check
 // Correspondences: the outlines of all poses side by side, what matches what, and the landmarks that say so.
-import { getJson } from './api.js';
+import { getJson, problemOf } from './api.js';
 import { attachCross } from './cross.js';
-import { byId, clamp, h, onceAFrame, s, set } from './dom.js';
+import { byId, clamp, h, onceAFrame, placeInSvg, s, set, targetOf } from './dom.js';
 import { icon } from './icons.js';
 import { drawTray, press, pressTwice, tray } from './marking.js';
 import { drawCell } from './marks.js';
@@ -10,9 +11,13 @@ import { attachPointer, pointOnPose } from './pointed.js';
 import { emit, on, store } from './state.js';
 import { tile } from './tiling.js';
 
+/** @import { MatchPose, Place } from './answers.js' */
+/** @import { Cell } from './match.js' */
+
 const root = h('div', { class: 'matches hidden', id: 'matches' });
 byId('stage').append(root);
 
+/** @type {Cell[]} */
 let cells = [];
 
 let reads = 0;
@@ -29,7 +34,7 @@ async function read() {
     if (layer !== store.layer || mine !== reads) return;
     takeMatch(answer, before);
   } catch (error) {
-    emit('refused', error.problem ?? { message: error.message });
+    emit('refused', problemOf(error));
     draw();
     return;
   } finally {
@@ -50,19 +55,20 @@ function build() {
   cells = match.data.poses.map((pose, index) => {
     const box = bounds(pose);
     const drawing = s('svg', { class: 'drawing', 'aria-label': `Drawing of ${pose.name}: arrow keys move a cross, Space puts a landmark there`, preserveAspectRatio: 'xMidYMid meet' });
-    const layers = Object.fromEntries(['picture', 'mesh', 'outline', 'links', 'marks', 'spot', 'cross'].map((name) => [name, s('g', { class: name })]));
+    const names = ['picture', 'mesh', 'outline', 'links', 'marks', 'spot', 'cross'];
+    const layers = /** @type {Cell['layers']} */ (Object.fromEntries(names.map((name) => [name, s('g', { class: name })])));
     drawing.append(...Object.values(layers));
     const warning = h('span', { class: 'warning' });
     const where = h('span', { class: 'faint small', role: 'status' });
     const element = h('figure', { class: `cell${pose.drawn ? '' : ' copy'}` }, h('figcaption', {}, h('b', {}, pose.name), index === match.data.reference ? h('span', { class: 'faint small' }, 'reference') : null, pose.drawn ? null : h('span', { class: 'faint small' }, 'copy'), where, h('span', { class: 'grow' }), warning), drawing);
-    const cell = { pose, index, box, drawing, layers, warning, where, element, cross: null };
+    /** @type {Cell} */
+    const cell = { pose, index, box, view: box, drawing, layers, warning, where, element, cross: null };
     // A copy has no drawing of its own: what it would show is bent otherwise.
     if (pose.picture && pose.drawn) {
       const { origin, scale, width, height } = pose.picture;
       const source = `api/drawing?layer=${store.layer}&pose=${pose.pose}&max=640&v=${store.state.revisions.pictures}`;
       layers.picture.append(s('image', { href: source, x: origin[0], y: origin[1], width: width / scale, height: height / scale, preserveAspectRatio: 'none' }));
     }
-    cell.view = box;
     set(drawing, { viewBox: box.join(' ') });
     attachCross(cell, unit, (place) => pointFrom(cell, place));
     attachPointer(drawing, (event) => pointFrom(cell, placeUnder(event, cell)));
@@ -75,6 +81,7 @@ function build() {
   arrange();
 }
 
+/** @type {(pose: MatchPose) => number[]} */
 function bounds(pose) {
   const points = pose.outline ?? [];
   if (points.length === 0 && pose.picture) {
@@ -88,26 +95,36 @@ function bounds(pose) {
   return points.length ? [left - room, top - room, right - left + 2 * room, bottom - top + 2 * room] : [0, 0, 100, 100];
 }
 
+/** @type {(cell: Cell, view: number[]) => void} */
 function showBox(cell, view) {
   cell.view = view;
   set(cell.drawing, { viewBox: view.join(' ') });
   draw();
 }
 
-/** The place of a drawing under the pointer. */
+/**
+ * The place of a drawing under the pointer.
+ * @type {(event: MouseEvent, cell: Cell) => Place}
+ */
 function placeUnder(event, cell) {
-  const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(cell.drawing.getScreenCTM().inverse());
-  return [point.x, point.y];
+  const { x, y } = placeInSvg(cell.drawing, event);
+  return [x, y];
 }
 
-/** Points at a place of a drawing, on all drawings; on the mesh of the match that is shown. */
+/**
+ * Points at a place of a drawing, on all drawings; on the mesh of the match that is shown.
+ * @type {(cell: Cell, place: Place) => void}
+ */
 function pointFrom(cell, place) {
   if (match.data.shape !== store.puppet?.shape) return;
   const pose = match.data.poses[cell.index];
   if (pose.outline) pointOnPose(store.layer, cell.index, [pose.outline, ...pose.holes], place);
 }
 
-/** Around the pointer, never farther than the whole drawing. */
+/**
+ * Around the pointer, never farther than the whole drawing.
+ * @type {(event: WheelEvent, cell: Cell) => void}
+ */
 function zoomCell(event, cell) {
   event.preventDefault();
   const [px, py] = placeUnder(event, cell);
@@ -125,7 +142,10 @@ function arrange() {
   draw();
 }
 
-/** Drawing units of one CSS pixel in a cell. */
+/**
+ * Drawing units of one CSS pixel in a cell.
+ * @type {(cell: Cell) => number}
+ */
 const unit = (cell) => {
   const [, , w, h_] = cell.view;
   // Asking the browser makes it lay the page out.
@@ -145,16 +165,19 @@ const draw = onceAFrame(() => {
   emit('matched', data.shape);
 });
 
-/** The link or landmark under the pointer is shown on all drawings. */
+/**
+ * The link or landmark under the pointer is shown on all drawings.
+ * @type {(target: Element | null) => void}
+ */
 function point(target) {
-  const link = target?.closest?.('[data-link]');
-  const mark = target?.closest?.('[data-landmark]');
-  const now = link ? Number(link.dataset.link) : mark ? mark.dataset.landmark : null;
+  const link = target?.closest?.('[data-link]')?.getAttribute('data-link');
+  const mark = target?.closest?.('[data-landmark]')?.getAttribute('data-landmark');
+  const now = link !== null && link !== undefined ? Number(link) : mark ?? null;
   if (now === match.pointed) return;
   match.pointed = now;
   draw();
 }
-root.addEventListener('pointerover', (event) => event.buttons === 0 && point(match.fresh?.open ? null : event.target));
+root.addEventListener('pointerover', (event) => event.buttons === 0 && point(match.fresh?.open ? null : targetOf(event)));
 root.addEventListener('pointerleave', () => point(null));
 
 on('view', (changes) => {

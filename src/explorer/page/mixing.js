@@ -1,32 +1,47 @@
+// @ts-check
 // A run of pixels in a row, made of look-ups in several textures.
 //
 // A look-up is bilinear with 8 bits between texels, as on a graphics card. Red and blue, and green and alpha, go through one
 // multiplication together: 255 times 256 parts fills 16 bits and no more, of a texel as of a weight.
 import { PAIR } from './texels.js';
 
+/** @import { Padded } from './texels.js' */
+
+/** @typedef {{ opacity: number, tint: number[] }} Seen How what is painted is seen. */
+
 /** Added before the lower 8 bits of both of a pair go. */
 const HALF = 0x800080;
 
 /** Colours added up as they are stored. Weights are in 256ths: what is shown is off by half a value at most. */
 export class PlainMix {
+  /** @param {number} most */
   constructor(most) {
     this.even = new Int32Array(most);
     this.odd = new Int32Array(most);
   }
 
-  /** Weights that sum to 1 as this takes them; what rounding leaves is the first one's. */
+  /**
+   * Weights that sum to 1 as this takes them; what rounding leaves is the first one's.
+   * @type {(weights: number[]) => number[]}
+   */
   weights(weights) {
     const parts = weights.map((weight) => Math.round(256 * weight));
     parts[0] += 256 - parts.reduce((sum, part) => sum + part, 0);
     return parts;
   }
 
-  /** A run of `count` pixels, with nothing in it. */
+  /**
+   * A run of `count` pixels, with nothing in it.
+   * @type {(count: number) => void}
+   */
   begin(count) {
     for (let k = 0; k < count; k++) this.even[k] = this.odd[k] = 0;
   }
 
-  /** Adds look-ups: the first at u, v in texels from the middle of the first one, each next one further by du, dv. */
+  /**
+   * Adds look-ups: the first at u, v in texels from the middle of the first one, each next one further by du, dv.
+   * @type {(texels: Padded, u: number, v: number, du: number, dv: number, count: number, weight: number) => void}
+   */
   add({ width, height, stride, data }, u, v, du, dv, count, weight) {
     const { even, odd } = this;
     const lastColumn = width - 1;
@@ -66,7 +81,10 @@ export class PlainMix {
     }
   }
 
-  /** Pixel `k` of the run, of which so much is covered (0 to 255), as red, green, blue, alpha; none if nothing is there. */
+  /**
+   * Pixel `k` of the run, of which so much is covered (0 to 255), as red, green, blue, alpha; none if nothing is there.
+   * @type {(k: number, area: number, seen: Seen) => number}
+   */
   pixel(k, area, { opacity, tint }) {
     const alpha = this.odd[k] >>> 16;
     if (alpha === 0) return 0;
@@ -83,11 +101,14 @@ export class PlainMix {
 
 /** Steps of light that are told apart when it becomes a value: a quarter of a value where they are steepest. */
 const LIGHTS = 16384;
+/** @type {(value: number) => number} */
 const lightOf = (value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4);
+/** @type {(light: number) => number} */
 const valueOf = (light) => (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055);
 
 /** Colours added up as light. */
 export class LightMix {
+  /** @param {number} most */
   constructor(most) {
     /** Red, green, blue, alpha of each pixel; colours times alpha. */
     this.sums = new Float64Array(4 * most);
@@ -95,14 +116,17 @@ export class LightMix {
     this.values = Float64Array.from({ length: LIGHTS + 1 }, (_, k) => 255 * valueOf(k / LIGHTS));
   }
 
+  /** @type {(weights: number[]) => number[]} */
   weights(weights) {
     return weights;
   }
 
+  /** @type {(count: number) => void} */
   begin(count) {
     this.sums.fill(0, 0, 4 * count);
   }
 
+  /** @type {(texels: Padded, u: number, v: number, du: number, dv: number, count: number, weight: number) => void} */
   add({ width, height, stride, data }, u, v, du, dv, count, weight) {
     const { sums, lights } = this;
     for (let k = 0; k < 4 * count; k += 4, u += du, v += dv) {
@@ -127,9 +151,11 @@ export class LightMix {
     }
   }
 
+  /** @type {(k: number, area: number, seen: Seen) => number} */
   pixel(k, area, { opacity, tint }) {
     const alpha = this.sums[4 * k + 3];
     if (!(alpha > 0)) return 0;
+    /** @type {(channel: number) => number} */
     const value = (channel) => {
       const own = this.values[Math.min(LIGHTS, ((this.sums[4 * k + channel] / alpha) * LIGHTS + 0.5) | 0)];
       return own * (1 - tint[3]) + 255 * tint[channel] * tint[3];
@@ -138,12 +164,19 @@ export class LightMix {
   }
 }
 
-/** The light of a value between 0 and 255. */
+/**
+ * The light of a value between 0 and 255.
+ * @type {(lights: Float64Array, value: number) => number}
+ */
 function light(lights, value) {
   const below = Math.min(value | 0, 254);
   return lights[below] + (value - below) * (lights[below + 1] - lights[below]);
 }
 
-/** Rounding may lead beyond what a byte holds. */
+/**
+ * Rounding may lead beyond what a byte holds.
+ * @type {(value: number) => number}
+ */
 const byte = (value) => (value < 254.5 ? value + 0.5 : 255);
+/** @type {(red: number, green: number, blue: number, alpha: number) => number} */
 const packed = (red, green, blue, alpha) => byte(red) | (byte(green) << 8) | (byte(blue) << 16) | (byte(alpha) << 24);

@@ -1,5 +1,8 @@
 //! The page's files, as they are served: plain HTML, CSS and JavaScript modules, one idea a file. `main.js` imports the others,
 //! which hear of everything by the events of `state.js`.
+//!
+//! Their types stand in their comments, those of the server's answers in `answers.d.ts`; `tsc --noEmit -p src/explorer/page` checks them,
+//! by `tsconfig.json`. Neither of these two is served.
 
 /// A file of the page: its name in the address, its type, its bytes.
 type PageFile = (&'static str, &'static str, &'static [u8]);

@@ -1,11 +1,14 @@
+// @ts-check
 // The pad: the pose space as a plane, poses as thumbnails in it, the probe that is dragged through.
-import { Drag, choosePose, edit, look, moveTo, on, rounded, store } from './state.js';
-import { byId, clamp, follow, h, onceAFrame, s, set, short } from './dom.js';
+import { Drag, choosePose, edit, look, moveTo, notYet, on, rounded, store } from './state.js';
+import { byId, clamp, focused, follow, found, h, onceAFrame, s, set, short, targetOf, updateAll } from './dom.js';
 import { numberField, segments, toggle } from './controls.js';
 import { niceStep, PadView, shownPlane } from './plane.js';
 import { paintMap, legend } from './maps.js';
 import { copyThumbnail, drawThumbnail } from './thumbnail.js';
 import { recordSample, recordStart, recordStop, recording } from './recorder.js';
+
+/** @import { Op, Place, Pose, PseudoPose } from './answers.js' */
 
 /** Pixels that a pointer may move before a press becomes a drag. */
 const STILL = 4;
@@ -20,8 +23,10 @@ const ends = s('svg', { class: 'lines', role: 'group', 'aria-label': 'Pseudo-pos
 const poses = h('div', { class: 'poses' });
 const probe = h('button', { type: 'button', class: 'probe', id: 'probe', 'aria-roledescription': 'two-dimensional slider' });
 const caption = legend();
-let view = null;
+/** @type {PadView} */
+let view = notYet();
 let frozen = false;
+/** @type {Place[]} */
 let pathPlaces = [];
 
 function measure() {
@@ -34,6 +39,7 @@ function measure() {
 /** The grid that places snap to. */
 const step = () => niceStep(view.plane.diagonal / 40);
 
+/** @type {(place: Place, free?: boolean) => Place} */
 function snapped(place, free = false) {
   if (!store.view.snap || free) return place.map((value) => rounded(value));
   const here = view.pixel(place);
@@ -44,7 +50,10 @@ function snapped(place, free = false) {
   return place.map((value) => rounded(Math.round(value / step()) * step(), 6));
 }
 
-/** The place under the pointer, in all dimensions; those that the pad does not show stay. */
+/**
+ * The place under the pointer, in all dimensions; those that the pad does not show stay.
+ * @type {(event: PointerEvent, base: Place, offset?: Place) => Place}
+ */
 function placeUnder(event, base, offset = [0, 0]) {
   const box = pad.getBoundingClientRect();
   const pixel = [event.clientX - box.left - offset[0], event.clientY - box.top - offset[1]].map((v) => clamp(v, 0, box.width));
@@ -54,13 +63,15 @@ function placeUnder(event, base, offset = [0, 0]) {
 
 // The probe.
 
+/** @type {(event: PointerEvent) => void} */
 function dragProbe(event) {
   if (event.button !== 0 || !store.scene?.poses.length) return;
   event.preventDefault();
   probe.focus({ preventScroll: true });
   const here = view.pixel(store.place);
   const box = pad.getBoundingClientRect();
-  const grabbed = event.target.closest('.probe') ? [event.clientX - box.left - here[0], event.clientY - box.top - here[1]] : [0, 0];
+  const grabbed = targetOf(event).closest('.probe') ? [event.clientX - box.left - here[0], event.clientY - box.top - here[1]] : [0, 0];
+  /** @type {(next: PointerEvent, ended: boolean) => void} */
   const to = (next, ended) => {
     // What the browser has put together into one event is drawn as one frame, but recorded as it was.
     const all = recording() && next.getCoalescedEvents ? next.getCoalescedEvents() : [next];
@@ -78,7 +89,10 @@ function dragProbe(event) {
 }
 pad.addEventListener('pointerdown', dragProbe);
 
-/** Moves the probe by steps of the keys. */
+/**
+ * Moves the probe by steps of the keys.
+ * @type {(way: number[], fine: boolean) => void}
+ */
 export function nudge([dx, dy], fine) {
   const by = fine ? step() / 5 : step();
   const [low, size] = [view.plane.low, view.plane.size];
@@ -94,8 +108,16 @@ function drawProbe() {
 
 // The poses.
 
+/** @type {Map<string, HTMLButtonElement>} */
 const thumbnails = new Map();
 
+/**
+ * What a pose is drawn on.
+ * @type {(element: HTMLElement) => HTMLCanvasElement}
+ */
+const pictureIn = (element) => /** @type {HTMLCanvasElement} */ (element.firstChild);
+
+/** @type {(pose: Pose, index: number) => HTMLButtonElement} */
 function thumbnail(pose, index) {
   const picture = h('canvas', { 'aria-hidden': 'true' });
   const button = h('button', { type: 'button', class: 'pose', 'data-pose': pose.name }, picture, h('span', { class: 'name' }));
@@ -114,7 +136,10 @@ function thumbnail(pose, index) {
   return button;
 }
 
-/** Where an arrow key takes a place of the plane; undefined for other keys. */
+/**
+ * Where an arrow key takes a place of the plane; undefined for other keys.
+ * @type {(event: KeyboardEvent, at: Place) => Place | undefined}
+ */
 function stepped(event, at) {
   const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
   if (!way) return undefined;
@@ -124,13 +149,16 @@ function stepped(event, at) {
   return at.map((v, d) => (d < 2 ? rounded(v + way[d] * by, 6) : v));
 }
 
+/** @type {(button: HTMLElement) => number} */
 const indexOf = (button) => store.scene.poses.findIndex((pose) => pose.name === button.dataset.pose);
 
+/** @type {(pose: Pose) => void} */
 function goTo(pose) {
   choosePose(store.scene.poses.indexOf(pose));
   moveTo(pose.at.slice());
 }
 
+/** @type {(event: PointerEvent, button: HTMLElement) => void} */
 function dragPose(event, button) {
   if (event.button !== 0 || recording()) return;
   event.preventDefault();
@@ -143,8 +171,10 @@ function dragPose(event, button) {
   const grabbed = [event.clientX - box.left - here[0], event.clientY - box.top - here[1]];
   const drag = new Drag(`move pose '${pose.name}'`);
   let moved = false;
+  /** @type {(Op & { at: Place }) | null} */
   let op = null;
   let stopped = false;
+  /** @type {(key: KeyboardEvent) => void} */
   const stop = (key) => {
     if (key.key !== 'Escape' || !moved) return;
     stopped = true;
@@ -170,6 +200,7 @@ function dragPose(event, button) {
   });
 }
 
+/** @type {(element: HTMLElement, at: Place) => void} */
 function place(element, at) {
   const [x, y] = view.pixel(at);
   element.style.transform = `translate(${x}px, ${y}px)`;
@@ -185,19 +216,19 @@ function drawPoses() {
   }
   const version = store.state?.revisions.pictures ?? 0;
   store.scene.poses.forEach((pose, index) => {
+    const element = thumbnails.get(pose.name) ?? thumbnail(pose, index);
     if (!thumbnails.has(pose.name)) {
-      thumbnails.set(pose.name, thumbnail(pose, index));
-      poses.append(thumbnails.get(pose.name));
+      thumbnails.set(pose.name, element);
+      poses.append(element);
     }
-    const element = thumbnails.get(pose.name);
     // Until there is a mesh, the drawing itself; then the pose as it is drawn (`thumbnail` events).
     const source = `api/drawing?layer=${pose.layers[0] ?? 0}&pose=${index}&max=256&v=${version}`;
-    const picture = element.firstChild;
+    const picture = pictureIn(element);
     if (picture.dataset.source !== source) {
       picture.dataset.source = source;
       if (!(store.state.revisions.shape > 0)) drawThumbnail(picture, source);
     }
-    element.lastChild.textContent = pose.name;
+    if (element.lastChild) element.lastChild.textContent = pose.name;
     element.classList.toggle('chosen', store.pose === index);
     element.classList.toggle('copy', pose.kind === 'deformed');
     element.classList.toggle('wrong', (store.state?.problems ?? []).some((problem) => problem.pose === pose.name));
@@ -211,6 +242,7 @@ function drawPoses() {
 function drawLines() {
   const side = view.side;
   [lines, ends].forEach((svg) => set(svg, { viewBox: `0 0 ${side} ${side}` }));
+  /** @type {(places: Place[], name: string) => SVGElement} */
   const polyline = (places, name) => s('polyline', { class: name, points: places.map((p) => view.pixel(p).join(',')).join(' ') });
   const made = [];
   const { low, size } = view.plane;
@@ -230,13 +262,14 @@ function drawLines() {
   }
   for (const { from, at } of store.scene.pseudo_poses) made.push(polyline([from, at], 'pseudo'));
   lines.replaceChildren(...made);
-  const held = document.activeElement?.dataset?.pseudo;
+  const held = focused()?.dataset?.pseudo;
   ends.replaceChildren(...store.scene.pseudo_poses.flatMap(pseudoPose));
-  if (held) ends.querySelector(`[data-pseudo="${held}"]`)?.focus({ preventScroll: true });
+  if (held) found(ends, `[data-pseudo="${held}"]`)?.focus({ preventScroll: true });
 }
 
+/** @type {(pseudo: PseudoPose, index: number) => SVGElement[]} */
 function pseudoPose(pseudo, index) {
-  return ['from', 'at'].map((name) => {
+  return /** @type {const} */ (['from', 'at']).map((name) => {
     const [x, y] = view.pixel(pseudo[name]);
     const what = name === 'at' ? `Pseudo-pose ${index + 1}: here` : `Pseudo-pose ${index + 1}: shows what was here`;
     const dot = s('circle', { class: `pseudo ${name}`, cx: x, cy: y, r: name === 'at' ? 5 : 3.5, tabindex: '0', role: 'button', 'aria-label': `${what}. Arrow keys move it.`, 'data-pseudo': `${index} ${name}` });
@@ -250,6 +283,7 @@ function pseudoPose(pseudo, index) {
   });
 }
 
+/** @type {(event: PointerEvent, pseudo: PseudoPose, index: number, name: 'from' | 'at') => void} */
 function dragPseudo(event, pseudo, index, name) {
   event.preventDefault();
   event.stopPropagation();
@@ -282,7 +316,10 @@ function drawAll() {
   drawMap();
 }
 
-/** The path that is played, shown in the plane. */
+/**
+ * The path that is played, shown in the plane.
+ * @type {(places: Place[]) => void}
+ */
 export function showPath(places) {
   pathPlaces = places;
   if (view) drawLines();
@@ -302,6 +339,7 @@ function drawFields() {
   if (fieldsFor !== dimension) {
     fieldsFor = dimension;
     const names = dimension <= 3 ? ['x', 'y', 'z'] : Array.from({ length: dimension }, (_, d) => `p${d + 1}`);
+    /** @type {(d: number) => HTMLElement} */
     const field = (d) => {
       const input = numberField(names[d], () => store.place[d] ?? 0, (value) => moveTo(store.place.map((v, k) => (k === d ? value : v))), { step: 0.01 });
       return h('label', { class: 'field' }, h('span', {}, names[d]), input);
@@ -309,7 +347,7 @@ function drawFields() {
     const home = h('button', { type: 'button', class: 'bordered', title: 'Go to the first pose (Home)', onclick: () => goTo(store.scene.poses[0]) }, 'Home');
     fields.replaceChildren(...Array.from({ length: dimension }, (_, d) => field(d)), h('span', { class: 'grow' }), home);
   }
-  fields.querySelectorAll('input').forEach((input) => input.update());
+  updateAll(fields, 'input');
 }
 
 on('scene gesture pose', () => {
@@ -321,8 +359,8 @@ on('place', () => {
   drawFields();
 });
 on('thumbnail', ({ pose, canvas: from, box }) => {
-  const picture = thumbnails.get(store.scene.poses[pose]?.name)?.firstChild;
-  if (picture) copyThumbnail(picture, from, box);
+  const element = thumbnails.get(store.scene.poses[pose]?.name);
+  if (element) copyThumbnail(pictureIn(element), from, box);
 });
 on('weights', drawMap);
 on('view', () => {

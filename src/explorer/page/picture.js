@@ -1,3 +1,4 @@
+// @ts-check
 // The picture: the frame where the probe is, with what can be laid under and over it.
 import { byId, h, onceAFrame, short } from './dom.js';
 import { curves, placeCurves } from './curves.js';
@@ -10,6 +11,9 @@ import { readSurfaces, Surface } from './surface.js';
 import { drawingView, frameGrid, frameSize, frameView, panBy, zoomBy } from './view.js';
 import { attachHandles, drawHandles, pictureDrag } from './handles.js';
 
+/** @import { Frame, Puppet } from './answers.js' */
+/** @import { PaintedAs } from './painter.js' */
+
 const stage = byId('stage');
 const paper = h('div', { class: 'paper', 'aria-hidden': 'true' });
 const canvas = h('canvas', { class: 'picture', id: 'picture', role: 'img', 'aria-label': 'The drawing at the probe' });
@@ -20,10 +24,15 @@ attachHandles(stage);
 
 const painter = painterOf(canvas);
 
+/** @type {Frame[]} */
 let under = [];
+/** @type {Puppet | null} */
 let loaded = null;
 
-/** A colour of the style as premultiplied red, green, blue, alpha. */
+/**
+ * A colour of the style as premultiplied red, green, blue, alpha.
+ * @type {(name: string, alpha: number) => number[]}
+ */
 function styled(name, alpha) {
   const text = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   return [...[1, 3, 5].map((k) => (parseInt(text.slice(k, k + 2), 16) / 255) * alpha), alpha];
@@ -77,11 +86,14 @@ function draw() {
 /** What is shown, for whoever waits for it from outside. */
 function tellWhat() {
   canvas.dataset.at = store.frame.place.join(',');
-  canvas.dataset.shape = store.frame.shape;
-  canvas.dataset.weights = store.frame.revision;
+  canvas.dataset.shape = String(store.frame.shape);
+  canvas.dataset.weights = String(store.frame.revision);
 }
 
-/** A frame with a layer's mesh that is being bent by handles, if there is one. */
+/**
+ * A frame with a layer's mesh that is being bent by handles, if there is one.
+ * @type {Frame | null}
+ */
 let bent = null;
 on('bent', (frame) => {
   bent = frame;
@@ -122,16 +134,29 @@ async function drawThumbnails() {
   draw();
 }
 
-/** What the pictures of each layer are painted on. */
+/**
+ * What the pictures of each layer are painted on.
+ * @type {Surface[]}
+ */
 let surfaces = [];
+/** @type {(frame: Frame, how: PaintedAs) => void} */
 const paint = (frame, how) => painter.frame({ ...frame, layers: frame.layers.map((shape, k) => surfaces[k].carried(shape)) }, how);
 
 let loading = 0;
-/** The revision of the pictures that the painter has. */
+/**
+ * The revision of the pictures that the painter has.
+ * @type {number | null}
+ */
 let pictures = null;
-/** Whether they are to be registered to one another. */
+/**
+ * Whether they are to be registered to one another.
+ * @type {string | undefined}
+ */
 let registered;
-/** One of the pictures of a layer. */
+/**
+ * One of the pictures of a layer.
+ * @type {(layer: number, index: number, kind: string) => Promise<ImageBitmap>}
+ */
 async function picture(layer, index, kind) {
   const answer = await fetch(`api/texture?layer=${layer}&index=${index}&kind=${kind}&v=${store.puppet.pictures}`);
   return createImageBitmap(await answer.blob(), { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
@@ -143,6 +168,7 @@ async function load() {
   clearTimeout(resting);
   registered = store.scene?.texture?.register;
   try {
+    /** @type {(kind: string) => Promise<ImageBitmap[][]>} */
     const all = (kind) => Promise.all(puppet.layers.map((layer, l) => Promise.all(layer.textures.map((_, k) => picture(l, k, kind)))));
     const isKnown = pictures === puppet.pictures;
     const [bitmaps, masks] = await Promise.all([isKnown ? null : all('colour'), isKnown || !puppet.nearest ? null : all('inside')]);
@@ -151,7 +177,7 @@ async function load() {
     painter.load(puppet, surfaces, bitmaps, masks);
     pictures = puppet.pictures;
     loaded = puppet;
-    document.documentElement.dataset.shape = puppet.shape;
+    document.documentElement.dataset.shape = String(puppet.shape);
     redraw();
     drawUnder();
     clearTimeout(resting);
@@ -169,7 +195,7 @@ async function rest() {
     if (mine !== loading) return;
     if (finer.some(Boolean)) {
       surfaces = store.meshes.map((mesh, k) => new Surface(mesh, finer[k]));
-      painter.load(loaded, surfaces, null);
+      if (loaded) painter.load(loaded, surfaces, null);
       redraw();
     }
     await drawThumbnails();
@@ -180,7 +206,7 @@ async function rest() {
 
 canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
 canvas.addEventListener('webglcontextrestored', () => {
-  painter.build();
+  painter.build?.();
   pictures = null;
   load();
 });
@@ -215,6 +241,7 @@ canvas.addEventListener('pointerdown', (event) => {
     let last = [event.clientX, event.clientY];
     canvas.setPointerCapture(event.pointerId);
     canvas.classList.add('panning');
+    /** @type {(next: PointerEvent) => void} */
     const move = (next) => {
       panBy(next.clientX - last[0], next.clientY - last[1]);
       last = [next.clientX, next.clientY];

@@ -1,10 +1,18 @@
+// @ts-check
 // The part of the pose space that the pad shows, and how places get to pixels. x runs right, y up.
 import { store } from './state.js';
+
+/** @import { Place } from './answers.js' */
+
+/** @typedef {{ low: Place, size: number, diagonal: number }} Plane */
 
 /** Free room around the poses, of the box's diagonal. */
 const MARGIN = 0.22;
 
-/** The square of the plane that is shown: {low: [x, y], size}. In one dimension y is nothing. */
+/**
+ * The square of the plane that is shown: {low: [x, y], size}. In one dimension y is nothing.
+ * @type {() => Plane}
+ */
 export function shownPlane() {
   const places = store.scene.poses.map((pose) => [pose.at[0] ?? 0, pose.at[1] ?? 0]);
   for (const pseudo of store.scene.pseudo_poses) places.push([pseudo.at[0] ?? 0, pseudo.at[1] ?? 0]);
@@ -18,22 +26,32 @@ export function shownPlane() {
 
 /** Places <-> pixels of a pad `side` pixels wide. */
 export class PadView {
+  /**
+   * @param {Plane} plane
+   * @param {number} side
+   */
   constructor(plane, side) {
-    Object.assign(this, { plane, side });
+    this.plane = plane;
+    this.side = side;
   }
 
+  /** @type {(place: Place) => Place} */
   pixel([x, y = 0]) {
     const { low, size } = this.plane;
     return [((x - low[0]) / size) * this.side, (1 - (y - low[1]) / size) * this.side];
   }
 
+  /** @type {(pixel: Place) => Place} */
   place([px, py]) {
     const { low, size } = this.plane;
     return [low[0] + (px / this.side) * size, low[1] + (1 - py / this.side) * size];
   }
 }
 
-/** A round number near `value`: 1, 2 or 5 times a power of ten. */
+/**
+ * A round number near `value`: 1, 2 or 5 times a power of ten.
+ * @type {(value: number) => number}
+ */
 export function niceStep(value) {
   const power = 10 ** Math.floor(Math.log10(value));
   const steps = [1, 2, 5, 10].map((step) => step * power);

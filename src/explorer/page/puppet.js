@@ -1,3 +1,4 @@
+// @ts-check
 // Draws frames as `inbetween frame` does: the textures of all poses on the mesh, added up by their weights, cut by the exact area
 // that the blended outline covers of each pixel. Where triangles overlap, the last one is seen: they are drawn from the last to the
 // first, each pixel once (by the depth buffer).
@@ -8,15 +9,43 @@ import { shownTextures, texelsOf, texturePlaces, windowOf } from './shown.js';
 import { attribute, SkirtedMesh } from './skirted.js';
 import { Squares } from './squares.js';
 
+/** @import { Frame, Mesh, Puppet, PuppetLayer, Shape } from './answers.js' */
+/** @import { Gl, Program } from './gl.js' */
+/** @import { Grid, Looks, PaintedAs, Wires } from './painter.js' */
+/** @import { Surface } from './surface.js' */
+
+/** @typedef {{ width: number, height: number, texture: WebGLTexture }} Areas */
+/** @typedef {{ pictures: WebGLTexture[], texels: number[], triangles: Uint32Array, mesh: SkirtedMesh }} Layer */
+
 /** Textures that are drawn at once; of more, the heaviest. WebGL2 has 15 varyings for sure, and 16 attributes and pictures, of which
  * one holds places and one areas. */
 const MOST_TEXTURES = 15;
 
 export class PuppetPainter {
-  /** `gl`: the canvas's own context. */
+  /**
+   * `gl`: the canvas's own context.
+   * @param {HTMLCanvasElement} canvas
+   * @param {Gl} gl
+   */
   constructor(canvas, gl) {
     this.canvas = canvas;
     this.gl = gl;
+    /** @type {number[]} */
+    this.view;
+    /** @type {Layer[]} */
+    this.layers;
+    /** @type {WebGLTexture[][]} */
+    this.pictures;
+    /** @type {Record<string, Program>} */
+    this.programs;
+    /** @type {Program} */
+    this.mesh;
+    /** @type {{ array: WebGLVertexArrayObject, buffer: WebGLBuffer }} */
+    this.corners;
+    /** @type {Areas | null} */
+    this.areas;
+    /** @type {Squares | null} */
+    this.squares;
     this.build();
   }
 
@@ -32,8 +61,11 @@ export class PuppetPainter {
     this.squares = null;
   }
 
-  /** Takes `api/puppet`, a `Surface` a layer and, per layer and texture, a bitmap, of nearest texels also a mask; without bitmaps the pictures
-   * that are there stay. */
+  /**
+   * Takes `api/puppet`, a `Surface` a layer and, per layer and texture, a bitmap, of nearest texels also a mask; without bitmaps the pictures
+   * that are there stay.
+   * @type {(puppet: Puppet, surfaces: Surface[], bitmaps: ImageBitmap[][] | null, masks?: ImageBitmap[][] | null) => void}
+   */
   load(puppet, surfaces, bitmaps, masks) {
     if (bitmaps) this.squares = puppet.nearest ? new Squares() : null;
     this.squares?.load(puppet, surfaces, bitmaps, masks);
@@ -45,6 +77,7 @@ export class PuppetPainter {
     this.layers = puppet.layers.map((layer, k) => this.layer(layer, surfaces[k], this.pictures[k]));
   }
 
+  /** @type {(layer: PuppetLayer, mesh: Mesh, pictures: WebGLTexture[]) => Layer} */
   layer({ textures }, mesh, pictures) {
     return {
       pictures,
@@ -54,7 +87,10 @@ export class PuppetPainter {
     };
   }
 
-  /** Clears the canvas. `view`: {scale, x, y}, from drawing units to pixels of the canvas. */
+  /**
+   * Clears the canvas. `view`: {scale, x, y}, from drawing units to pixels of the canvas.
+   * @type {(view: Grid) => void}
+   */
   begin(view) {
     const { gl, canvas } = this;
     this.view = [view.scale, view.x, view.y];
@@ -66,11 +102,14 @@ export class PuppetPainter {
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  /** Draws a frame on what is there; nearest texels on the `grid` of the scene's frames. */
-  frame(frame, { opacity = 1, tint = [0, 0, 0, 0], inLight = false, grid } = {}) {
+  /**
+   * Draws a frame on what is there; nearest texels on the `grid` of the scene's frames.
+   * @type {(frame: Frame, how: PaintedAs) => void}
+   */
+  frame(frame, { opacity = 1, tint = [0, 0, 0, 0], inLight = false, grid }) {
     const { gl } = this;
     if (this.squares) {
-      this.squareFrame(frame, opacity, { tint, inLight }, grid);
+      this.squareFrame(this.squares, frame, opacity, { tint, inLight }, grid);
       return;
     }
     for (const k of frame.order) {
@@ -86,8 +125,11 @@ export class PuppetPainter {
     }
   }
 
-  /** Draws a frame's pixels as squares. */
-  squareFrame(frame, opacity, looks, grid) {
+  /**
+   * Draws a frame's pixels as squares.
+   * @type {(squares: Squares, frame: Frame, opacity: number, looks: Looks, grid: Grid) => void}
+   */
+  squareFrame(squares, frame, opacity, looks, grid) {
     const { gl, canvas, view: [scale, x, y] } = this;
     const size = scale / grid.scale;
     const { made, at } = (this.programs.squares ??= program(gl, ...SQUARES));
@@ -97,7 +139,7 @@ export class PuppetPainter {
     gl.bindVertexArray(null);
     for (const k of frame.order) {
       const shape = frame.layers[k];
-      const painted = shape.opacity > 0 ? this.squares.paint(k, shape, grid, looks) : null;
+      const painted = shape.opacity > 0 ? squares.paint(k, shape, grid, looks) : null;
       if (!painted) continue;
       const { left, top, image } = painted;
       gl.activeTexture(gl.TEXTURE0);
@@ -110,13 +152,14 @@ export class PuppetPainter {
     }
   }
 
+  /** @type {(layer: Layer, shape: Shape, opacity: number, tint: number[], inLight: boolean) => void} */
   drawLayer(layer, shape, opacity, tint, inLight) {
     const { gl, canvas } = this;
     const shown = shownTextures(layer, shape, this.view[0], MOST_TEXTURES);
     if (shown.length === 0) return;
-    const { made, at } = (this.programs[[shown.length, inLight]] ??= program(gl, ...textured(shown.length, inLight)));
+    const { made, at } = (this.programs[`${shown.length},${inLight}`] ??= program(gl, ...textured(shown.length, inLight)));
     gl.useProgram(made);
-    bound(gl, 0, this.areas.texture);
+    bound(gl, 0, /** @type {Areas} */ (this.areas).texture);
     gl.uniform1i(at.areas, 0);
     gl.uniform2f(at.size, canvas.width, canvas.height);
     gl.uniform3fv(at.view, this.view);
@@ -139,7 +182,10 @@ export class PuppetPainter {
     gl.disable(gl.SCISSOR_TEST);
   }
 
-  /** Fills the texture of areas where the window is; its rows count from the top. */
+  /**
+   * Fills the texture of areas where the window is; its rows count from the top.
+   * @type {(rings: Float32Array[], window: number[]) => void}
+   */
   fillAreas(rings, window) {
     const { gl, canvas } = this;
     if (this.areas?.width !== canvas.width || this.areas.height !== canvas.height) {
@@ -157,7 +203,10 @@ export class PuppetPainter {
     this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
-  /** The meshes of a frame, over it. Colours are premultiplied. */
+  /**
+   * The meshes of a frame, over it. Colours are premultiplied.
+   * @type {(frame: Frame, meshes: Mesh[], how: Wires) => void}
+   */
   wires(frame, meshes, { line, wrong, thickness = 0.5 }) {
     const { gl, canvas } = this;
     const { made, at } = this.mesh;
@@ -183,6 +232,7 @@ export class PuppetPainter {
   }
 }
 
+/** @type {(gl: Gl, unit: number, what: WebGLTexture) => void} */
 function bound(gl, unit, what) {
   gl.activeTexture(gl.TEXTURE0 + unit);
   gl.bindTexture(gl.TEXTURE_2D, what);

@@ -1,20 +1,51 @@
+// @ts-check
 // Triangles row by row: which pixels of a window each one has first, and what the textures show there.
+
+/** @import { LightMix, PlainMix, Seen } from './mixing.js' */
+/** @import { Skirt } from './skirt.js' */
+/** @import { Padded } from './texels.js' */
+
+/** @typedef {{ skirt: Skirt, places: Float32Array, areas: Uint8Array, textures: PlacedTexture[], mix: PlainMix | LightMix, seen: Seen }} Painted */
+/** @typedef {{ weight: number, texels: Padded, at: Float32Array }} PlacedTexture */
 
 /** Numbers that a texture has in a triangle: u, v at its first corner, and what they change by in x and in y. */
 const PLANE = 6;
 
 export class Scan {
-  /** For `most` textures at once. */
+  /**
+   * For `most` textures at once.
+   * @param {number} most
+   */
   constructor(most) {
     this.planes = new Float64Array(PLANE * most);
     this.taken = new Uint32Array(0);
     this.turn = 0;
+    // What is painted, and where.
+    /** @type {Skirt} */
+    this.skirt;
+    /** @type {Float32Array} */
+    this.places;
+    /** @type {Uint8Array} */
+    this.areas;
+    /** @type {PlacedTexture[]} */
+    this.textures;
+    /** @type {PlainMix | LightMix} */
+    this.mix;
+    /** @type {Seen} */
+    this.seen;
+    /** @type {Uint32Array} */
+    this.pixels;
+    this.width = 0;
+    this.height = 0;
+    this.origin = 0;
+    this.stride = 0;
   }
 
   /**
    * Paints the triangles of a `skirt` into a window of `pixels` (straight red, green, blue, alpha), which has `stride` pixels a row; every
    * pixel of it is written. `places`: x, y of each vertex in pixels of the window. `areas`: how much of each of its pixels is covered, 0
    * to 255. `textures`: [{weight, texels, at}], `at` being x, y in texels at each vertex, added up by `mix`; `seen`: {opacity, tint}.
+   * @type {(what: Painted, window: number[], pixels: Uint32Array, stride: number) => void}
    */
   paint(what, [left, top, right, bottom], pixels, stride) {
     Object.assign(this, what, { width: right - left, height: bottom - top, origin: top * stride + left, pixels, stride });
@@ -28,7 +59,10 @@ export class Scan {
     for (let k = 0; k < corners.length; k += 3) this.triangle(corners[k], corners[k + 1], corners[k + 2], k < inside);
   }
 
-  /** Of the mesh itself only what is not turned over. */
+  /**
+   * Of the mesh itself only what is not turned over.
+   * @type {(a: number, b: number, c: number, isInside: boolean) => void}
+   */
   triangle(a, b, c, isInside) {
     const { places } = this;
     const ax = places[2 * a];
@@ -59,7 +93,10 @@ export class Scan {
     }
   }
 
-  /** The maps from the triangle to each texture. */
+  /**
+   * The maps from the triangle to each texture.
+   * @type {(a: number, b: number, c: number, bx: number, by: number, cx: number, cy: number, doubled: number) => void}
+   */
   layPlanes(a, b, c, bx, by, cx, cy, doubled) {
     const { planes, textures } = this;
     for (let k = 0; k < textures.length; k++) {
@@ -75,7 +112,10 @@ export class Scan {
     }
   }
 
-  /** The pixels of a row that are covered and have nothing yet, run by run. */
+  /**
+   * The pixels of a row that are covered and have nothing yet, run by run.
+   * @type {(row: number, from: number, to: number, ax: number, ay: number) => void}
+   */
   row(row, from, to, ax, ay) {
     const { areas, taken, turn } = this;
     const start = row * this.width;
@@ -91,7 +131,10 @@ export class Scan {
     }
   }
 
-  /** Pixels side by side; `x` and `y` lead from the triangle's first corner to the middle of the first of them. */
+  /**
+   * Pixels side by side; `x` and `y` lead from the triangle's first corner to the middle of the first of them.
+   * @type {(row: number, from: number, to: number, x: number, y: number) => void}
+   */
   run(row, from, to, x, y) {
     const { planes, textures, mix, areas, pixels, seen } = this;
     const count = to - from;
@@ -107,7 +150,10 @@ export class Scan {
   }
 }
 
-/** Where an edge crosses a height; the same to the last bit for both triangles that have it. */
+/**
+ * Where an edge crosses a height; the same to the last bit for both triangles that have it.
+ * @type {(ax: number, ay: number, bx: number, by: number, y: number) => number}
+ */
 function crossing(ax, ay, bx, by, y) {
   return ay < by ? ax + ((y - ay) * (bx - ax)) / (by - ay) : bx + ((y - by) * (ax - bx)) / (ay - by);
 }

@@ -1,6 +1,8 @@
+// @ts-check
 // Draws frames as `puppet.js` does, on the processor: where a browser has no graphics card, WebGL2 is missing or slower than this, since
 // its price is one a triangle.
 import { coveredAreas } from './areas.js';
+import { brushOff } from './dom.js';
 import { isUpright } from './geometry.js';
 import { LightMix, PlainMix } from './mixing.js';
 import { Scan } from './scan.js';
@@ -9,24 +11,53 @@ import { Skirt } from './skirt.js';
 import { Squares } from './squares.js';
 import { Texels } from './texels.js';
 
+/** @import { Frame, Mesh, Puppet } from './answers.js' */
+/** @import { Grid, Looks, PaintedAs, Wires } from './painter.js' */
+/** @import { PlacedTexture } from './scan.js' */
+/** @import { ShownTexture } from './shown.js' */
+/** @import { Surface } from './surface.js' */
+
+/** @typedef {{ skirt: Skirt, triangles: Uint32Array, edges: Edges | null, texels: number[], pictures: Texels[], places: Float32Array[], scaled: Record<string, Float32Array> }} Layer */
+/** @typedef {{ of: Uint32Array, ends: Uint32Array }} Edges The edges of triangles. */
+
 /** Textures that are drawn at once; of more, the heaviest. */
 const MOST_TEXTURES = 64;
 
 export class ScannedPainter {
-  /** `context`: the canvas's own, two-dimensional. */
+  /**
+   * `context`: the canvas's own, two-dimensional.
+   * @param {HTMLCanvasElement} canvas
+   * @param {CanvasRenderingContext2D} context
+   */
   constructor(canvas, context) {
     this.canvas = canvas;
     this.context = context;
+    /** @type {Layer[]} */
     this.layers = [];
+    /** @type {Texels[][]} */
     this.pictures = [];
     this.scan = new Scan(MOST_TEXTURES);
-    this.image = null;
-    this.mixes = null;
-    /** Of scenes that show nearest texels. */
+    /** @type {number[]} */
+    this.view;
+    /** @type {ImageData} */
+    this.image;
+    /** @type {Uint32Array} */
+    this.pixels;
+    /** @type {OffscreenCanvasRenderingContext2D | null} */
+    this.sheet = null;
+    /** @type {{ plain: PlainMix, light: LightMix }} */
+    this.mixes;
+    /**
+     * Of scenes that show nearest texels.
+     * @type {Squares | null}
+     */
     this.squares = null;
   }
 
-  /** As `PuppetPainter.load`. */
+  /**
+   * As `PuppetPainter.load`.
+   * @type {(puppet: Puppet, surfaces: Surface[], bitmaps: ImageBitmap[][] | null, masks?: ImageBitmap[][] | null) => void}
+   */
   load(puppet, surfaces, bitmaps, masks) {
     if (bitmaps) this.squares = puppet.nearest ? new Squares() : null;
     this.squares?.load(puppet, surfaces, bitmaps, masks);
@@ -48,7 +79,10 @@ export class ScannedPainter {
     });
   }
 
-  /** Clears the canvas. `view`: {scale, x, y}, from drawing units to pixels of the canvas. */
+  /**
+   * Clears the canvas. `view`: {scale, x, y}, from drawing units to pixels of the canvas.
+   * @type {(view: Grid) => void}
+   */
   begin(view) {
     const { canvas } = this;
     this.view = [view.scale, view.x, view.y];
@@ -61,10 +95,13 @@ export class ScannedPainter {
     this.mixes = { plain: new PlainMix(canvas.width), light: new LightMix(canvas.width) };
   }
 
-  /** Draws a frame on what is there; nearest texels on the `grid` of the scene's frames. */
-  frame(frame, { opacity = 1, tint = [0, 0, 0, 0], inLight = false, grid } = {}) {
+  /**
+   * Draws a frame on what is there; nearest texels on the `grid` of the scene's frames.
+   * @type {(frame: Frame, how: PaintedAs) => void}
+   */
+  frame(frame, { opacity = 1, tint = [0, 0, 0, 0], inLight = false, grid }) {
     if (this.squares) {
-      this.squareFrame(frame, opacity, { tint, inLight }, grid);
+      this.squareFrame(this.squares, frame, opacity, { tint, inLight }, grid);
       return;
     }
     const mix = inLight ? this.mixes.light : this.mixes.plain;
@@ -89,18 +126,21 @@ export class ScannedPainter {
     }
   }
 
-  /** Draws a frame's pixels as squares. */
-  squareFrame(frame, opacity, looks, grid) {
+  /**
+   * Draws a frame's pixels as squares.
+   * @type {(squares: Squares, frame: Frame, opacity: number, looks: Looks, grid: Grid) => void}
+   */
+  squareFrame(squares, frame, opacity, looks, grid) {
     const { context, view: [scale, x, y] } = this;
     const size = scale / grid.scale;
     context.imageSmoothingEnabled = false;
     for (const k of frame.order) {
       const shape = frame.layers[k];
-      const painted = shape.opacity > 0 ? this.squares.paint(k, shape, grid, looks) : null;
+      const painted = shape.opacity > 0 ? squares.paint(k, shape, grid, looks) : null;
       if (!painted) continue;
       const { left, top, image } = painted;
       const sheet = new OffscreenCanvas(image.width, image.height);
-      sheet.getContext('2d').putImageData(image, 0, 0);
+      brushOff(sheet).putImageData(image, 0, 0);
       context.globalAlpha = opacity * shape.opacity;
       context.drawImage(sheet, (left - grid.x) * size + x, (top - grid.y) * size + y, image.width * size, image.height * size);
     }
@@ -108,14 +148,17 @@ export class ScannedPainter {
     this.isClear = false;
   }
 
-  /** Puts what was painted over what is there. */
+  /**
+   * Puts what was painted over what is there.
+   * @type {(window: number[]) => void}
+   */
   put([left, top, right, bottom]) {
     const [width, height] = [right - left, bottom - top];
     const { canvas, context } = this;
     if (this.isClear) {
       context.putImageData(this.image, 0, 0, left, top, width, height);
     } else {
-      this.sheet ??= new OffscreenCanvas(canvas.width, canvas.height).getContext('2d', { willReadFrequently: true });
+      this.sheet ??= brushOff(new OffscreenCanvas(canvas.width, canvas.height), { willReadFrequently: true });
       this.sheet.putImageData(this.image, 0, 0, left, top, width, height);
       context.drawImage(this.sheet.canvas, left, top, width, height, left, top, width, height);
     }
@@ -125,7 +168,10 @@ export class ScannedPainter {
   /** What is drawn is done. */
   finish() {}
 
-  /** The meshes of a frame, over it. Colours are premultiplied. */
+  /**
+   * The meshes of a frame, over it. Colours are premultiplied.
+   * @type {(frame: Frame, meshes: Mesh[], how: Wires) => void}
+   */
   wires(frame, meshes, { line, wrong, thickness = 0.5 }) {
     const { context, view: [scale, x, y] } = this;
     for (const k of frame.order) {
@@ -134,6 +180,7 @@ export class ScannedPainter {
       if (this.layers[k].edges?.of !== triangles) this.layers[k].edges = { of: triangles, ends: edgesOf(triangles) };
       const edges = this.layers[k].edges.ends;
       const { positions } = frame.layers[k];
+      /** @type {(step: 'moveTo' | 'lineTo', vertex: number) => void} */
       const go = (step, vertex) => context[step](positions[2 * vertex] * scale + x, positions[2 * vertex + 1] * scale + y);
       context.lineWidth = 2 * thickness;
       context.beginPath();
@@ -160,7 +207,10 @@ export class ScannedPainter {
   }
 }
 
-/** Textures in the size in which they are shown, and where they are at each vertex, in texels from the middle of the first. */
+/**
+ * Textures in the size in which they are shown, and where they are at each vertex, in texels from the middle of the first.
+ * @type {(layer: Layer, shown: ShownTexture[], mix: PlainMix | LightMix) => PlacedTexture[]}
+ */
 function texturesAt(layer, shown, mix) {
   const weights = mix.weights(shown.map(({ weight }) => weight));
   return shown.map(({ number, level }, k) => {
@@ -171,7 +221,10 @@ function texturesAt(layer, shown, mix) {
   });
 }
 
-/** The edges of triangles, each once: two vertices. */
+/**
+ * The edges of triangles, each once: two vertices.
+ * @type {(triangles: Uint32Array) => Uint32Array}
+ */
 function edgesOf(triangles) {
   const known = new Map();
   for (let k = 0; k < triangles.length; k++) {
@@ -181,8 +234,12 @@ function edgesOf(triangles) {
   return Uint32Array.from([...known.values()].flat());
 }
 
-/** A premultiplied colour for a canvas. */
+/**
+ * A premultiplied colour for a canvas.
+ * @type {(colour: number[]) => string}
+ */
 function css([red, green, blue, alpha]) {
+  /** @type {(value: number) => number} */
   const part = (value) => Math.round((255 * value) / alpha);
   return `rgb(${part(red)} ${part(green)} ${part(blue)} / ${alpha})`;
 }

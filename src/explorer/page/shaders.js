@@ -1,6 +1,10 @@
+// @ts-check
 // The shaders of `puppet.js`.
 
-/** A vertex's place, which is the attribute of this number, on the canvas. */
+/**
+ * A vertex's place, which is the attribute of this number, on the canvas.
+ * @type {(location: number) => string}
+ */
 const placed = (location) => `
 layout(location = ${location}) in vec2 place; // in drawing units
 uniform vec2 size; // of the canvas, in pixels
@@ -17,9 +21,11 @@ vec3 value(vec3 c) { return mix(c * 12.92, 1.055 * pow(max(c, 0.0), vec3(1.0 / 2
 /**
  * So many textures, added up by their weights, in light or as values, and cut by the area that the silhouette covers. Whether in light
  * is not asked in the shader: where both sides of a question are computed, as on processors, powers cost more than all else.
+ * @type {(count: number, inLight: boolean) => [string, string]}
  */
 export const textured = (count, inLight) => {
-  const each = (line) => Array.from({ length: count }, (_, k) => line.replaceAll('$', k)).join('\n');
+  /** @type {(line: string) => string} */
+  const each = (line) => Array.from({ length: count }, (_, k) => line.replaceAll('$', String(k))).join('\n');
   return [`${placed(count)}
 ${each('layout(location = $) in vec2 at$; // where in the texture')}
 ${each('out vec2 uv$;')}
@@ -47,7 +53,10 @@ void main() {
 }`];
 };
 
-/** The triangles' edges, the inverted ones filled. */
+/**
+ * The triangles' edges, the inverted ones filled.
+ * @type {[string, string]}
+ */
 export const MESH = [`${placed(0)}
 out vec3 corners;
 void main() {
@@ -65,7 +74,10 @@ void main() {
   colour = gl_FrontFacing ? line * near : mix(wrong * 0.45, wrong, near);
 }`];
 
-/** A picture whose texels are shown as squares, in a box of the canvas: left, top, width and height in pixels. */
+/**
+ * A picture whose texels are shown as squares, in a box of the canvas: left, top, width and height in pixels.
+ * @type {[string, string]}
+ */
 export const SQUARES = [`
 uniform vec2 size; // of the canvas, in pixels
 uniform vec4 box;

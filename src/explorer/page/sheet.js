@@ -1,11 +1,26 @@
+// @ts-check
 // One sheet with what was taken for the figure on it: the body, loose parts, what was left out. A click on a part leaves it out or takes
 // it back; a click on something else that is drawn asks for it.
-import { getJson } from './api.js';
+import { getJson, problemOf } from './api.js';
 import { s, set } from './dom.js';
 import { layerOfSheets } from './figures.js';
 import { crossingsAt, isInside } from './located.js';
 import { edit, emit, rounded } from './state.js';
 
+/** @import { Figure, Op, Piece, Place, Sheet } from './answers.js' */
+/** @import { Properties } from './dom.js' */
+
+/** @typedef {Figure & { sheet: Sheet }} ReadFigure Of a sheet that could be read. */
+/** @typedef {'keep' | 'drop'} List */
+/**
+ * The sheet of a pose and what is drawn over it.
+ * @typedef {{
+ *   name: string, drawing: SVGSVGElement, layers: Record<'picture' | 'veil' | 'pieces' | 'places', SVGGElement>,
+ *   taken: HTMLElement, warning: HTMLElement, element: HTMLElement,
+ * }} Cell
+ */
+
+/** @type {Record<Piece['role'], [string, string]>} */
 const SAID = {
   body: ['The body of the figure', 'leave it out'],
   part: ['A loose part', 'leave it out'],
@@ -13,10 +28,15 @@ const SAID = {
   dropped: ['Left out', 'take it back'],
 };
 
+/** @type {(points: number[]) => string} */
 const ring = (points) => `M${Array.from({ length: points.length / 2 }, (_, k) => `${points[2 * k]} ${points[2 * k + 1]}`).join('L')}Z`;
+/** @type {(piece: Piece) => string} */
 const rings = ({ outline, holes }) => [outline, ...holes].map(ring).join('');
 
-/** Draws a figure over its sheet; `px`: drawing units of a CSS pixel. */
+/**
+ * Draws a figure over its sheet; `px`: drawing units of a CSS pixel.
+ * @type {(cell: Cell, figure: ReadFigure, px: number) => void}
+ */
 export function drawFigure(cell, figure, px) {
   const { origin: [x, y], scale, width, height } = figure.sheet;
   const [w, h] = [width / scale, height / scale];
@@ -25,10 +45,12 @@ export function drawFigure(cell, figure, px) {
   cell.layers.veil.replaceChildren(veil);
   // The body first: what is small lies over it.
   cell.layers.pieces.replaceChildren(...figure.pieces.map((piece) => pieceMark(cell, figure, piece, px)));
+  /** @type {(list: List) => SVGElement[]} */
   const marks = (list) => figure[list].map((at, index) => placeMark(cell, list, at, index, px));
   cell.layers.places.replaceChildren(...marks('keep'), ...marks('drop'));
 }
 
+/** @type {(cell: Cell, figure: Figure, piece: Piece, px: number) => SVGElement} */
 function pieceMark(cell, figure, piece, px) {
   const [what, action] = SAID[piece.role];
   const isAlone = piece.role === 'body' && figure.pieces.filter(({ role }) => role !== 'dropped').length === 1;
@@ -45,6 +67,7 @@ function pieceMark(cell, figure, piece, px) {
   }, path) : s('g', { class: `piece ${piece.role}` }, path);
 }
 
+/** @type {(action: () => void) => (event: KeyboardEvent) => void} */
 const pressed = (action) => (event) => {
   if (event.key !== 'Enter' && event.key !== ' ') return;
   event.preventDefault();
@@ -52,9 +75,13 @@ const pressed = (action) => (event) => {
   action();
 };
 
-/** A place that the scene names. */
+/**
+ * A place that the scene names.
+ * @type {(cell: Cell, list: List, at: Place, index: number, px: number) => SVGElement}
+ */
 function placeMark(cell, list, [x, y], index, px) {
   const label = `${list === 'keep' ? 'A part here is asked for' : 'A part here is left out'}: click to forget it`;
+  /** @type {(event?: Event) => void} */
   const forget = (event) => {
     event?.stopPropagation();
     edit([{ op: 'unmark_part', pose: cell.name, list, index }], `forget a part of '${cell.name}'`);
@@ -69,9 +96,14 @@ function placeMark(cell, list, [x, y], index, px) {
   s('title', {}, label));
 }
 
-/** Takes a piece out of the figure, or back into it. */
+/**
+ * Takes a piece out of the figure, or back into it.
+ * @type {(cell: Cell, figure: Figure, piece: Piece) => Promise<unknown>}
+ */
 function change(cell, figure, { role, outline, holes }) {
+  /** @type {(list: List) => { at: Place, index: number }[]} */
   const within = (list) => figure[list].map((at, index) => ({ at, index })).filter(({ at }) => isInside([outline], at));
+  /** @type {(list: List) => Op[]} */
   const forget = (list) => within(list).reverse().map(({ index }) => ({ op: 'unmark_part', pose: cell.name, list, index }));
   if (role === 'dropped') return edit(forget('drop'), `take back a part of '${cell.name}'`);
   if (role === 'kept') return edit(forget('keep'), `forget a part of '${cell.name}'`);
@@ -82,10 +114,14 @@ function change(cell, figure, { role, outline, holes }) {
 /** Rows that are tried, of the height of a ring. */
 const ROWS = 16;
 
-/** A place well inside of rings: the middle of the longest run of some rows through them. */
+/**
+ * A place well inside of rings: the middle of the longest run of some rows through them.
+ * @type {(all: number[][]) => Place}
+ */
 export function placeIn(all) {
   const ys = all[0].filter((_, k) => k & 1);
   const [low, high] = [ys.reduce((a, b) => Math.min(a, b)), ys.reduce((a, b) => Math.max(a, b))];
+  /** @type {{ length: number, at: Place } | null} */
   let best = null;
   for (let row = 1; row < ROWS; row++) {
     const y = low + ((high - low) * row) / ROWS;
@@ -98,22 +134,28 @@ export function placeIn(all) {
   return (best?.at ?? [all[0][0], all[0][1]]).map((value) => rounded(value, 2));
 }
 
-/** Asks for what is drawn at a place, if there is something. */
+/**
+ * Asks for what is drawn at a place, if there is something.
+ * @type {(cell: Cell, pose: number, place: Place) => Promise<void>}
+ */
 export async function askFor(cell, pose, place) {
   const at = place.map((value) => rounded(value, 2));
   try {
     await getJson('figure', { layer: layerOfSheets(), pose, keep: at });
     await edit([{ op: 'mark_part', pose: cell.name, list: 'keep', at }], `ask for a part of '${cell.name}'`);
   } catch (error) {
-    emit('refused', error.problem ?? { message: error.message });
+    emit('refused', problemOf(error));
   }
 }
 
-/** Puts a sheet's picture where it lies. */
+/**
+ * Puts a sheet's picture where it lies.
+ * @type {(cell: Cell, figure: ReadFigure, pose: number) => void}
+ */
 export function drawSheet(cell, figure, pose) {
   const { origin, scale, width, height } = figure.sheet;
   const source = `api/sheet?layer=${layerOfSheets()}&pose=${pose}&max=1600&v=${figure.mark}`;
-  const image = cell.layers.picture.firstChild ?? s('image', { preserveAspectRatio: 'none' });
+  const image = /** @type {Element | null} */ (cell.layers.picture.firstChild) ?? s('image', { preserveAspectRatio: 'none' });
   if (image.getAttribute('href') !== source) set(image, { href: source });
   set(image, { x: origin[0], y: origin[1], width: width / scale, height: height / scale });
   if (!image.parentNode) cell.layers.picture.append(image);

@@ -1,22 +1,31 @@
+// @ts-check
 // The sheets of all drawings, whole, with what was taken for the figure on each.
-import { byId, h, onceAFrame, s, set } from './dom.js';
+import { byId, focused, found, h, onceAFrame, placeInSvg, s, set, targetOf } from './dom.js';
 import { figures, posesWithSheets } from './figures.js';
 import { icon } from './icons.js';
 import { askFor, drawFigure, drawSheet } from './sheet.js';
 import { choosePose, on, store } from './state.js';
 import { tile } from './tiling.js';
 
+/** @import { Cell, ReadFigure } from './sheet.js' */
+
 const root = h('div', { class: 'sheets', id: 'sheets' });
+/** @type {(name: string) => SVGElement} */
 const line = (name) => s('svg', { class: `swatch ${name}`, viewBox: '0 0 16 8' }, s('path', { d: 'M1 4H15' }));
+/** @type {(name: string, text: string) => HTMLElement} */
 const swatch = (name, text) => h('span', {}, line(name), text);
 const legend = h('div', { class: 'key', 'aria-hidden': 'true' },
   swatch('body', 'Body'), swatch('part', 'Loose part'), swatch('dropped', 'Left out'));
 const frame = h('div', { class: 'sheets-frame hidden' }, root, legend);
 byId('stage').append(frame);
 
-/** By pose. */
+/**
+ * By pose.
+ * @type {Map<number, Cell>}
+ */
 let cells = new Map();
 
+/** @type {Record<string, string>} */
 const TAKEN = { alpha: 'cut out', background: 'painted', lines: 'lines' };
 
 function build() {
@@ -27,10 +36,12 @@ function build() {
   root.replaceChildren(...[...cells.values()].map((cell) => cell.element));
 }
 
+/** @type {(pose: number) => Cell} */
 function makeCell(pose) {
   const { name } = store.scene.poses[pose];
   const drawing = s('svg', { class: 'sheet', preserveAspectRatio: 'xMidYMid meet', role: 'group', 'aria-label': `Sheet of ${name}` });
-  const layers = Object.fromEntries(['picture', 'veil', 'pieces', 'places'].map((part) => [part, s('g', { class: part })]));
+  const parts = ['picture', 'veil', 'pieces', 'places'];
+  const layers = /** @type {Cell['layers']} */ (Object.fromEntries(parts.map((part) => [part, s('g', { class: part })])));
   drawing.append(...Object.values(layers));
   const taken = h('span', { class: 'faint small' });
   const warning = h('span', { class: 'warning' });
@@ -41,10 +52,10 @@ function makeCell(pose) {
   const cell = { name, drawing, layers, taken, warning, element };
   drawing.addEventListener('click', (event) => {
     choosePose(pose);
-    if (event.target.closest('.choice, .place')) return;
-    const { x, y } = new DOMPoint(event.clientX, event.clientY).matrixTransform(drawing.getScreenCTM().inverse());
+    if (targetOf(event).closest('.choice, .place')) return;
+    const { x, y } = placeInSvg(drawing, event);
     // On the figure itself there is nothing to be asked for.
-    if (!event.target.closest('.piece')) askFor(cell, pose, [x, y]);
+    if (!targetOf(event).closest('.piece')) askFor(cell, pose, [x, y]);
   });
   return cell;
 }
@@ -54,22 +65,23 @@ const draw = onceAFrame(() => {
   build();
   const shapes = [...cells.keys()].map((pose) => figures.get(pose)?.sheet).map((sheet) => (sheet ? sheet.width / sheet.height : 1));
   tile(root, shapes);
-  const focused = document.activeElement?.closest?.('.sheets g')?.getAttribute('aria-label');
+  const label = focused()?.closest?.('.sheets g')?.getAttribute('aria-label');
   for (const [pose, cell] of cells) {
     const figure = figures.get(pose);
     cell.element.classList.toggle('chosen', store.pose === pose);
-    cell.taken.textContent = TAKEN[figure?.taken] ?? '';
+    cell.taken.textContent = TAKEN[figure?.taken ?? ''] ?? '';
     cell.warning.replaceChildren(...(figure?.problem ? [icon('warn'), 'cannot be used'] : []));
     cell.warning.title = figure?.problem?.message ?? '';
     if (!figure?.sheet) continue;
     const { origin, scale, width, height } = figure.sheet;
     set(cell.drawing, { viewBox: [origin[0], origin[1], width / scale, height / scale].join(' ') });
-    drawSheet(cell, figure, pose);
+    const read = /** @type {ReadFigure} */ (figure);
+    drawSheet(cell, read, pose);
     const { clientWidth, clientHeight } = cell.drawing;
-    drawFigure(cell, figure, Math.max(width / Math.max(clientWidth, 1), height / Math.max(clientHeight, 1)) / scale);
+    drawFigure(cell, read, Math.max(width / Math.max(clientWidth, 1), height / Math.max(clientHeight, 1)) / scale);
   }
-  if (focused) root.querySelector(`[aria-label="${CSS.escape(focused)}"]`)?.focus();
-  document.documentElement.dataset.figures = store.state.revisions.scene;
+  if (label) found(root, `[aria-label="${CSS.escape(label)}"]`)?.focus();
+  document.documentElement.dataset.figures = String(store.state.revisions.scene);
 });
 
 on('view', () => {

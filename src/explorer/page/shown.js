@@ -1,20 +1,34 @@
+// @ts-check
 // What of a layer is to be drawn: where it can be on the canvas, which of its textures count, how finely. The same for whoever draws it.
 import { extentOfAll, trianglesArea } from './geometry.js';
+
+/** @import { Mesh, Shape, Texture } from './answers.js' */
+
+/** @typedef {{ number: number, weight: number, level: number }} ShownTexture */
 
 /** A texture that counts for less is not drawn. */
 const FAINTEST = 1e-3;
 /** Texels that a pixel may span before a smaller picture is used, as in `render::texture`. */
 const MOST_TEXELS_A_PIXEL = 2.28;
 
-/** Where a texture is at each vertex of a mesh, x, y, from 0 to 1 over the picture; `puppet` is a layer of `api/puppet`. */
+/**
+ * Where a texture is at each vertex of a mesh, x, y, from 0 to 1 over the picture; `puppet` is a layer of `api/puppet`.
+ * @type {(texture: Texture, mesh: Mesh) => Float32Array}
+ */
 export function texturePlaces({ pose, colour: { width, height, origin, scale } }, mesh) {
   return mesh.poses[pose].map((value, k) => ((value - origin[k & 1]) * scale) / (k & 1 ? height : width));
 }
 
-/** How many texels of a texture a mesh covers. */
+/**
+ * How many texels of a texture a mesh covers.
+ * @type {(texture: Texture, mesh: Mesh) => number}
+ */
 export const texelsOf = ({ pose, colour: { scale } }, mesh) => trianglesArea(mesh.triangles, mesh.poses[pose]) * scale * scale;
 
-/** The pixels of a canvas that rings can touch: left, top, right, bottom; null if there are none. `view`: scale and shift. */
+/**
+ * The pixels of a canvas that rings can touch: left, top, right, bottom; null if there are none. `view`: scale and shift.
+ * @type {(rings: Float32Array[], view: number[], canvas: { width: number, height: number }) => number[] | null}
+ */
 export function windowOf(rings, [scale, x, y], { width, height }) {
   const [low, high] = extentOfAll(rings);
   const window = [
@@ -27,6 +41,7 @@ export function windowOf(rings, [scale, x, y], { width, height }) {
 /**
  * The textures of a layer ({texels: how many of each its mesh covers}) that count in a shape, the heaviest first, `most` of them:
  * {number, weight, level}; weights sum to 1, level 0 is the picture itself, each further one half as wide.
+ * @type {(layer: { texels: number[], triangles: Uint32Array }, shape: Shape, scale: number, most: number) => ShownTexture[]}
  */
 export function shownTextures({ texels, triangles }, shape, scale, most) {
   const total = shape.textureWeights.reduce((sum, weight) => sum + Math.max(weight, 0), 0);

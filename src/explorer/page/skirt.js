@@ -1,11 +1,15 @@
+// @ts-check
 // A mesh with a skirt around it: a band beyond the boundary that carries its colours on, since the outline that cuts them is finer than
 // the boundary.
 import { diagonal, ringArea } from './geometry.js';
+
+/** @import { Flat, Mesh } from './answers.js' */
 
 /** How far the skirt reaches, of the drawing's size. */
 const REACH = 0.04;
 
 export class Skirt {
+  /** @param {Mesh} mesh */
   constructor({ vertices, triangles, rings, poses }) {
     this.vertices = vertices;
     this.reach = REACH * diagonal(poses[0]);
@@ -16,20 +20,28 @@ export class Skirt {
     this.corners = new Uint32Array(triangles.length + skirt.length);
     for (let k = 0; k < triangles.length; k++) this.corners[k] = triangles[triangles.length - 3 - 3 * Math.floor(k / 3) + (k % 3)];
     this.corners.set(skirt, triangles.length);
-    [this.inside, this.outside] = [triangles.length, skirt.length];
+    this.inside = triangles.length;
+    this.outside = skirt.length;
     this.values = new Float32Array(2 * (vertices + this.rim.length));
   }
 
-  /** Where the vertices are, and behind them those of the skirt's outer side. What is answered is overwritten by the next call. */
+  /**
+   * Where the vertices are, and behind them those of the skirt's outer side. What is answered is overwritten by the next call.
+   * @type {(points: Float32Array) => Float32Array}
+   */
   places(points) {
     return this.skirted(points, this.reach);
   }
 
-  /** Values x, y of the vertices, and behind them those of the outer side, which are those of the boundary. */
+  /**
+   * Values x, y of the vertices, and behind them those of the outer side, which are those of the boundary.
+   * @type {(values: Float32Array) => Float32Array}
+   */
   carried(values) {
     return this.skirted(values, 0);
   }
 
+  /** @type {(points: Float32Array, reach: number) => Float32Array} */
   skirted(points, reach) {
     const { values } = this;
     values.set(points);
@@ -45,14 +57,22 @@ export class Skirt {
   }
 }
 
-/** Of each vertex of a ring: itself and the two beside it, such that outward is to the left of the way between them. */
+/**
+ * Of each vertex of a ring: itself and the two beside it, such that outward is to the left of the way between them.
+ * @type {(ring: Uint32Array, forward: boolean) => number[][]}
+ */
 function rimOf(ring, forward) {
+  /** @type {(k: number) => number} */
   const at = (k) => ring[(k + ring.length) % ring.length];
   return Array.from(ring, (vertex, k) => (forward ? [vertex, at(k - 1), at(k + 1)] : [vertex, at(k + 1), at(k - 1)]));
 }
 
-/** Two triangles an edge of the boundary; the outer vertices are numbered on from `outer`. */
+/**
+ * Two triangles an edge of the boundary; the outer vertices are numbered on from `outer`.
+ * @type {(rings: Uint32Array[], outer: number) => number[]}
+ */
 function skirtOf(rings, outer) {
+  /** @type {number[]} */
   const corners = [];
   for (const ring of rings) {
     for (let k = 0; k < ring.length; k++) {

@@ -1,15 +1,26 @@
+// @ts-check
 // A mesh with its skirt on the graphics card.
 import { Skirt } from './skirt.js';
 
+/** @import { Mesh } from './answers.js' */
+/** @import { Gl } from './gl.js' */
+
 export class SkirtedMesh {
-  /** `coordinates`: for each texture, where it is at each vertex, x, y. */
+  /**
+   * `coordinates`: for each texture, where it is at each vertex, x, y.
+   * @param {Gl} gl
+   * @param {Mesh} mesh
+   * @param {Float32Array[]} coordinates
+   */
   constructor(gl, mesh, coordinates) {
     this.gl = gl;
     this.skirt = new Skirt(mesh);
     const { corners, inside, values } = this.skirt;
     this.inside = corners.subarray(0, inside);
     this.array = gl.createVertexArray();
-    [this.indices, this.places, this.coordinates] = [0, 1, 2].map(() => gl.createBuffer());
+    this.indices = gl.createBuffer();
+    this.places = gl.createBuffer();
+    this.coordinates = gl.createBuffer();
     gl.bindVertexArray(this.array);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.indices);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, corners, gl.STATIC_DRAW);
@@ -19,7 +30,10 @@ export class SkirtedMesh {
     coordinates.forEach((of, k) => gl.bufferSubData(gl.ARRAY_BUFFER, k * values.byteLength, this.skirt.carried(of)));
   }
 
-  /** Makes ready to be drawn where `points` are: attribute k is where the k-th of the chosen textures is, the last one the place. */
+  /**
+   * Makes ready to be drawn where `points` are: attribute k is where the k-th of the chosen textures is, the last one the place.
+   * @type {(points: Float32Array, textures: number[]) => void}
+   */
   bind(points, textures) {
     const { gl, skirt } = this;
     gl.bindVertexArray(this.array);
@@ -46,7 +60,10 @@ export class SkirtedMesh {
   }
 }
 
-/** Lets an attribute be pairs of numbers from the buffer that is bound. */
+/**
+ * Lets an attribute be pairs of numbers from the buffer that is bound.
+ * @type {(gl: Gl, location: number, offset: number) => void}
+ */
 export function attribute(gl, location, offset) {
   gl.enableVertexAttribArray(location);
   gl.vertexAttribPointer(location, 2, gl.FLOAT, false, 0, offset);

@@ -1,22 +1,34 @@
+// @ts-check
 // Pictures as texels in memory, in sizes from the whole down by halves.
+import { brushOff } from './dom.js';
+
+/** @typedef {Pixels & { stride: number }} Padded With the last column and row twice. */
+
+/** @typedef {{ width: number, height: number, data: Uint32Array }} Pixels */
 
 /** Red and blue of a texel; green and alpha of one that is moved by 8 bits. */
 export const PAIR = 0xff00ff;
 
 export class Texels {
+  /** @param {ImageBitmap} bitmap */
   constructor(bitmap) {
     const { width, height } = bitmap;
-    const context = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
+    const context = brushOff(new OffscreenCanvas(width, height), { willReadFrequently: true });
     context.drawImage(bitmap, 0, 0);
     const { data } = context.getImageData(0, 0, width, height);
+    /** @type {Pixels[]} */
     this.levels = [{ width, height, data: new Uint32Array(data.buffer) }];
+    /** @type {Padded[]} */
     this.padded = [];
   }
 
-  /** The texels of a level, or of the smallest there is, with the last column and row twice: {width, height, stride, data}. */
+  /**
+   * The texels of a level, or of the smallest there is, with the last column and row twice: {width, height, stride, data}.
+   * @type {(level: number) => Padded}
+   */
   at(level) {
     while (this.levels.length <= level) {
-      const last = this.levels.at(-1);
+      const last = this.levels[this.levels.length - 1];
       if (last.width === 1 && last.height === 1) break;
       this.levels.push(halved(last));
     }
@@ -25,7 +37,10 @@ export class Texels {
   }
 }
 
-/** Half as wide and high: each texel the mean of four. */
+/**
+ * Half as wide and high: each texel the mean of four.
+ * @type {(texels: Pixels) => Pixels}
+ */
 function halved({ width, height, data }) {
   const [columns, rows] = [Math.max(1, width >> 1), Math.max(1, height >> 1)];
   const half = new Uint32Array(columns * rows);
@@ -44,6 +59,7 @@ function halved({ width, height, data }) {
   return { width: columns, height: rows, data: half };
 }
 
+/** @type {(texels: Pixels) => Padded} */
 function padded({ width, height, data }) {
   const stride = width + 1;
   const wide = new Uint32Array(stride * (height + 1));

@@ -1,7 +1,9 @@
+// @ts-check
 // Light or dark: what the system says, until it is chosen.
 import { emit } from './state.js';
 
 const system = matchMedia('(prefers-color-scheme: dark)');
+/** @type {string | null} */
 let chosen = null;
 try {
   chosen = localStorage.getItem('inbetween-theme');

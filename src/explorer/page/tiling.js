@@ -1,3 +1,4 @@
+// @ts-check
 // Tiles of different shapes side by side: as many columns as make them largest.
 
 /** Pixels of a tile that its content does not have: left and right, above and below. */
@@ -6,7 +7,10 @@ const EDGE = [12, 42];
 const GAP = 10;
 const MARGIN = 24;
 
-/** Says in `--columns` and `--rows` of `root` how tiles are laid out whose contents have these widths, their heights being 1. */
+/**
+ * Says in `--columns` and `--rows` of `root` how tiles are laid out whose contents have these widths, their heights being 1.
+ * @type {(root: HTMLElement, shapes: number[]) => void}
+ */
 export function tile(root, shapes) {
   const [width, height] = [root.clientWidth - MARGIN, root.clientHeight - MARGIN];
   let best = [0, 1];
@@ -16,6 +20,6 @@ export function tile(root, shapes) {
     const size = Math.min(...shapes.map((shape) => Math.min(w, h * shape) / Math.sqrt(shape)));
     if (size > best[0]) best = [size, columns];
   }
-  root.style.setProperty('--columns', best[1]);
-  root.style.setProperty('--rows', Math.ceil(shapes.length / best[1]));
+  root.style.setProperty('--columns', String(best[1]));
+  root.style.setProperty('--rows', String(Math.ceil(shapes.length / best[1])));
 }

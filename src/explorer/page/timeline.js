@@ -1,24 +1,34 @@
+// @ts-check
 // The timeline: play, scrub, record a gesture, smooth and retime it, save it into the scene.
-import { postJson } from './api.js';
-import { byId, clamp, follow, fixed, h } from './dom.js';
+import { postJson, problemOf } from './api.js';
+import { byId, clamp, follow, fixed, found, h, targetOf, updateAll } from './dom.js';
 import { arm, isArmed, recording } from './recorder.js';
 import { iconButton, numberField, slider, toggle } from './controls.js';
 import { icon } from './icons.js';
 import { edit, emit, moveTo, on, onChange, rounded, store } from './state.js';
 import { showPath } from './pad.js';
 
+/** @import { Path, Place } from './answers.js' */
+
+/** @typedef {{ smoothing: number, tolerance: number, duration: number | null, loop: boolean }} Settings What `api/gesture` is asked with. */
+
 const root = byId('timeline');
 
+/** @type {Path | null} */
 let path = null; // of api/path
 let playing = false;
 let loops = false;
 let time = 0;
+/** @type {Settings} */
 let settings = { smoothing: 0.06, tolerance: 0.01, duration: null, loop: false };
 
 const duration = () => path?.duration ?? 0;
 
-/** The place at a time: between the frames that the server has computed, straight. */
-function placeAt(t) {
+/**
+ * The place at a time: between the frames that the server has computed, straight.
+ * @type {(path: Path, t: number) => Place}
+ */
+function placeAt(path, t) {
   const { at, fps, start = 0 } = path;
   const here = clamp((t - start) * fps, 0, at.length - 1);
   const [k, part] = [Math.floor(here), here % 1];
@@ -29,10 +39,11 @@ function placeAt(t) {
 /** Whether it is the timeline that moves the probe. */
 let leads = false;
 
+/** @type {(t: number) => void} */
 function seek(t) {
   time = clamp(t, 0, duration());
   leads = true;
-  if (path?.at.length) moveTo(placeAt(time + (path.start ?? 0)).map((v) => rounded(v, 6)));
+  if (path?.at.length) moveTo(placeAt(path, time + (path.start ?? 0)).map((v) => rounded(v, 6)));
   leads = false;
   drawHead();
 }
@@ -40,6 +51,7 @@ function seek(t) {
 // Playing.
 
 let last = 0;
+/** @type {(now: number) => void} */
 function tick(now) {
   if (!playing) return;
   let next = time + Math.min((now - last) / 1000, 0.25);
@@ -55,6 +67,7 @@ function tick(now) {
   requestAnimationFrame(tick);
 }
 
+/** @type {(value?: boolean) => void} */
 export function play(value = !playing) {
   if (value && duration() <= 0) return;
   playing = value;
@@ -67,8 +80,15 @@ export function play(value = !playing) {
   playButton.setAttribute('aria-label', playing ? 'Pause' : 'Play');
 }
 
-/** One frame on or back. */
-export const stepFrame = (by) => path && (play(false), seek(time + by / path.fps));
+/**
+ * One frame on or back.
+ * @type {(by: number) => void}
+ */
+export function stepFrame(by) {
+  if (!path) return;
+  play(false);
+  seek(time + by / path.fps);
+}
 
 // Parts.
 
@@ -88,6 +108,7 @@ const track = h('div', {
 track.addEventListener('pointerdown', (event) => {
   if (event.button !== 0 || !path) return;
   play(false);
+  /** @type {(next: PointerEvent) => void} */
   const to = (next) => {
     const box = track.getBoundingClientRect();
     seek(((next.clientX - box.left) / box.width) * duration());
@@ -102,7 +123,7 @@ track.addEventListener('keydown', (event) => {
   event.preventDefault();
   event.stopPropagation();
   if (by !== undefined) stepFrame(by);
-  else seek(end);
+  else if (end !== undefined) seek(end);
 });
 const hint = h('span', { class: 'hint faint' });
 const tools = h('div', { class: 'gesture hidden' });
@@ -129,11 +150,14 @@ function drawMarks() {
   root.classList.toggle('fresh', Boolean(store.gesture));
 }
 
-/** Moves a key in time, between its neighbours. */
+/**
+ * Moves a key in time, between its neighbours.
+ * @type {(event: PointerEvent, index: number) => void}
+ */
 function dragKey(event, index) {
   if (event.button !== 0) return;
   event.stopPropagation();
-  const keys = store.scene.animation.keys.map((key) => ({ time: key.time, at: key.at }));
+  const keys = (store.scene.animation?.keys ?? []).map((key) => ({ time: key.time, at: key.at }));
   const box = track.getBoundingClientRect();
   const start = keys[0].time;
   const total = duration();
@@ -145,7 +169,7 @@ function dragKey(event, index) {
     moved ||= Math.abs(next.clientX - event.clientX) > 3;
     if (moved && index > 0) {
       keys[index].time = t;
-      event.target.style.left = `${(100 * (t - start)) / total}%`;
+      targetOf(event).style.left = `${(100 * (t - start)) / total}%`;
     }
     if (!ended) return;
     if (moved && index > 0) edit([{ op: 'set_keys', keys }], 'move a key');
@@ -174,8 +198,10 @@ async function readPath() {
 // Gestures.
 
 let resolving = 0;
+/** @type {(changes?: Partial<Settings>) => Promise<void>} */
 async function resolve(changes = {}) {
   settings = { ...settings, ...changes };
+  if (!store.gesture) return;
   const mine = ++resolving;
   try {
     const answer = await postJson('gesture', { samples: store.gesture.samples, ...settings });
@@ -185,7 +211,7 @@ async function resolve(changes = {}) {
     await readPath();
     drawGesture();
   } catch (error) {
-    emit('refused', error.problem ?? { message: error.message });
+    emit('refused', problemOf(error));
   }
 }
 
@@ -213,8 +239,9 @@ function drawGesture() {
       h('button', { type: 'button', onclick: discard }, 'Discard'),
       h('button', { type: 'button', class: 'main', id: 'save-gesture', onclick: keep }, 'Save to scene'));
   }
-  tools.querySelector('.keys').textContent = store.gesture.keys ? `${store.gesture.keys.length} keys` : '';
-  tools.querySelectorAll('input, .slider').forEach((control) => control.update?.());
+  const count = found(tools, '.keys');
+  if (count) count.textContent = store.gesture.keys ? `${store.gesture.keys.length} keys` : '';
+  updateAll(tools, 'input, .slider');
 }
 
 function discard() {
@@ -225,7 +252,8 @@ function discard() {
 }
 
 async function keep() {
-  const { keys } = store.gesture;
+  const keys = store.gesture?.keys;
+  if (!keys) return;
   const state = await edit([{ op: 'set_keys', keys: keys.map((key) => ({ time: rounded(key.time, 3), at: key.at.map((v) => rounded(v)) })), loop: loops }], 'record a gesture');
   if (state) discard();
 }

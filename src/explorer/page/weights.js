@@ -1,8 +1,10 @@
+// @ts-check
 // The weights of all poses where the probe is, as bars and numbers.
 import { byId, fixed, h } from './dom.js';
 import { choosePose, look, on, store } from './state.js';
 
 const list = byId('weights');
+/** @type {{ button: HTMLButtonElement, bar: HTMLElement, seen: HTMLElement, number: HTMLElement, name: string }[]} */
 let rows = [];
 let names = '';
 
