@@ -3,6 +3,7 @@
 import { query } from './api.js';
 import { h } from './dom.js';
 import { instead } from './frames.js';
+import { Newest } from './newest.js';
 import { on, store } from './state.js';
 
 /** @import { Grid } from './painter.js' */
@@ -12,7 +13,7 @@ const RESTS_AFTER = 90;
 
 export const curves = h('img', { class: 'curves hidden', alt: '', 'aria-hidden': 'true', draggable: 'false' });
 let resting = 0;
-let asked = 0;
+const requests = new Newest();
 
 const isWanted = () => store.view.main === 'picture' && store.view.onion === 'off' && !store.view.mesh && store.view.tool !== 'bend' &&
   store.frame?.layers.length > 0 && (store.puppet?.layers ?? []).some((layer) => layer.curves);
@@ -25,14 +26,14 @@ function show(value) {
 
 /** The pixels are shown again, until the probe rests. */
 function hide() {
-  asked++;
+  requests.begin();
   show(false);
   clearTimeout(resting);
   if (isWanted()) resting = setTimeout(load, RESTS_AFTER);
 }
 
 async function load() {
-  const mine = ++asked;
+  const mine = requests.begin();
   const { frame } = store;
   curves.src = `api/curves${query({ at: frame.place, ...instead() })}&v=${frame.shape}.${frame.revision}`;
   try {
@@ -40,7 +41,7 @@ async function load() {
   } catch {
     return;
   }
-  if (mine !== asked || frame !== store.frame || !isWanted()) return;
+  if (!requests.is(mine) || frame !== store.frame || !isWanted()) return;
   show(true);
   document.documentElement.dataset.curves = frame.place.join(',');
 }

@@ -3,6 +3,7 @@
 import { postJson } from './api.js';
 import { found, h } from './dom.js';
 import { iconButton } from './controls.js';
+import { Newest } from './newest.js';
 import { asked, on, store } from './state.js';
 import { toast } from './toasts.js';
 
@@ -63,15 +64,15 @@ function fields() {
   return Object.fromEntries(Object.entries(all).filter(([, value]) => value !== undefined));
 }
 
-let asking = 0;
+const requests = new Newest();
 async function changed() {
-  const mine = ++asking;
+  const mine = requests.begin();
   start.disabled = output.value.trim() === '';
   try {
     const answer = await postJson('command', { verb: 'render', ...fields() });
-    if (mine === asking) command.textContent = answer.command;
+    if (requests.is(mine)) command.textContent = answer.command;
   } catch (error) {
-    if (mine === asking) command.textContent = /** @type {Error} */ (error).message;
+    if (requests.is(mine)) command.textContent = /** @type {Error} */ (error).message;
   }
 }
 

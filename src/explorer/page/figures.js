@@ -1,6 +1,7 @@
 // @ts-check
 // What was taken for the figure of each drawing, asked for while the sheets are shown.
 import { getJson, problemOf } from './api.js';
+import { Newest } from './newest.js';
 import { emit, on, store } from './state.js';
 
 /** @import { Figure } from './answers.js' */
@@ -25,20 +26,20 @@ export function posesWithSheets() {
 }
 
 let asked = '';
-let reads = 0;
+const reads = new Newest();
 async function read() {
   if (store.view.main !== 'drawings' || !store.scene?.poses.length) return;
   const { revisions } = store.state;
   const now = JSON.stringify([layerOfSheets(), revisions.scene, revisions.pictures]);
   if (now === asked) return;
   asked = now;
-  const mine = ++reads;
+  const mine = reads.begin();
   const poses = posesWithSheets();
   const found = await Promise.all(poses.map((pose) => getJson('figure', { layer: layerOfSheets(), pose }).catch((error) => {
     emit('refused', problemOf(error));
     return null;
   })));
-  if (mine !== reads) return;
+  if (!reads.is(mine)) return;
   figures.clear();
   poses.forEach((pose, k) => found[k] && figures.set(pose, found[k]));
   emit('figures');

@@ -4,6 +4,7 @@ import { postJson, postWords, problemOf } from './api.js';
 import { follow, h, s, set } from './dom.js';
 import { framesOf } from './frames.js';
 import { onMesh, partsIn, placed } from './located.js';
+import { OneAtATime } from './newest.js';
 import { drawingView, toDrawing, toStage } from './view.js';
 import { edit, emit, moveTo, notYet, on, rounded, store } from './state.js';
 
@@ -59,24 +60,16 @@ function reach(event) {
   const anchor = hit === null ? null : onLayer(hit, from);
   if (hit === null || !anchor) return;
   const begun = store.place.slice();
-  /** @type {Place | null} */
-  let wanted = null;
-  let asking = false;
-  const ask = async () => {
-    if (asking || !wanted) return;
-    asking = true;
-    const to = wanted;
-    wanted = null;
+  const search = new OneAtATime(async (/** @type {Place} */ to) => {
+    const provider = store.view.compare?.provider ?? null;
     try {
-      const answer = await postJson('reach', { layer: hit, at: begun, start: store.place, points: [{ from, to }], provider: store.view.compare?.provider ?? null });
+      const answer = await postJson('reach', { layer: hit, at: begun, start: store.place, points: [{ from, to }], provider });
       if (reaching) moveTo(answer.at.map((v) => rounded(v)));
     } catch (error) {
       emit('refused', problemOf(error));
-      wanted = null;
+      search.forget();
     }
-    asking = false;
-    ask();
-  };
+  });
   reaching = { anchor, layer: hit, to: from };
   follow(event, (next, ended) => {
     if (ended) {
@@ -86,8 +79,7 @@ function reach(event) {
     }
     const to = under(next);
     if (reaching) reaching.to = to;
-    wanted = to;
-    ask();
+    search.want(to);
     drawHandles();
   });
 }
@@ -181,19 +173,13 @@ function carriers(layer, points, ring) {
 let latest = null;
 const shownBent = () => latest ?? store.meshes[store.layer].poses[layerPose(basis)];
 
-let deforming = false;
-let again = false;
-async function deform() {
-  if (deforming) {
-    again = true;
-    return;
-  }
+/** Bends the pose by the handles as they are when it is their turn. */
+const bending = new OneAtATime(async () => {
   if (handles.length === 0) {
     latest = null;
     emit('bent', bentFrame(shownBent(), 0));
     return;
   }
-  deforming = true;
   const pose = store.scene.poses[basis];
   try {
     const words = await postWords('deform', { layer: store.layer, pose: pose.name, handles: handles.map(({ from, to }) => ({ from, to })) });
@@ -205,12 +191,8 @@ async function deform() {
   } catch (error) {
     emit('refused', problemOf(error));
   }
-  deforming = false;
-  if (again) {
-    again = false;
-    deform();
-  }
-}
+});
+const deform = () => bending.want(undefined);
 
 /**
  * A frame of one pose, with one layer's vertices elsewhere.

@@ -3,6 +3,7 @@
 import { getWords } from './api.js';
 import { store } from './state.js';
 import { brushOf, brushOff, h, s, set } from './dom.js';
+import { Newest } from './newest.js';
 
 /** @import { Words } from './api.js' */
 /** @import { PadView } from './plane.js' */
@@ -17,7 +18,7 @@ const VALIDITY_CELLS = 28;
 const EASY = 1.25;
 const HARD = 4;
 
-let asked = 0;
+const requests = new Newest();
 /** @type {Known | null} */
 let known = null;
 
@@ -39,11 +40,11 @@ export async function paintMap(canvas, view, caption) {
   const box = [low[0], low[1], low[0] + size, low[1] + size];
   const key = JSON.stringify([kind, box, store.state.revisions.weights, store.state.revisions.shape, store.view.compare]);
   if (known?.key !== key) {
-    const mine = ++asked;
+    const mine = requests.begin();
     const cells = kind === 'weight' ? WEIGHT_CELLS : VALIDITY_CELLS;
     try {
       const words = await getWords(kind === 'weight' ? 'grid' : 'validity', { box, columns: cells, rows: cells, provider: store.view.compare?.provider });
-      if (mine !== asked) return;
+      if (!requests.is(mine)) return;
       known = { key, kind, words, cells };
     } catch {
       if (known?.kind !== kind) return;

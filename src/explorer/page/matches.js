@@ -7,6 +7,7 @@ import { icon } from './icons.js';
 import { drawTray, press, pressTwice, tray } from './marking.js';
 import { drawCell } from './marks.js';
 import { match, takeMatch } from './match.js';
+import { Newest } from './newest.js';
 import { attachPointer, pointOnPose } from './pointed.js';
 import { emit, on, store } from './state.js';
 import { tile } from './tiling.js';
@@ -20,18 +21,18 @@ byId('stage').append(root);
 /** @type {Cell[]} */
 let cells = [];
 
-let reads = 0;
+const reads = new Newest();
 /** The reads whose answers are not here yet. */
 let reading = 0;
 async function read() {
   if (!store.scene?.poses.length) return;
-  const mine = ++reads;
+  const mine = reads.begin();
   reading++;
   try {
     const layer = store.layer;
     const before = match.data;
     const answer = await getJson('correspondences', { layer, samples: 0, known: before?.poses.map((pose) => pose.mark) });
-    if (layer !== store.layer || mine !== reads) return;
+    if (layer !== store.layer || !reads.is(mine)) return;
     takeMatch(answer, before);
   } catch (error) {
     emit('refused', problemOf(error));

@@ -56,6 +56,7 @@ const MODULES: &[PageFile] = modules![
     "match.js",
     "matches.js",
     "mixing.js",
+    "newest.js",
     "pad.js",
     "painter.js",
     "picture.js",

@@ -6,6 +6,7 @@ import { emit, on, store } from './state.js';
 import { getWords } from './api.js';
 import { framesOf } from './frames.js';
 import { extentOfAll } from './geometry.js';
+import { Newest } from './newest.js';
 import { painterOf } from './painter.js';
 import { readSurfaces, Surface } from './surface.js';
 import { drawingView, frameGrid, frameSize, frameView, panBy, zoomBy } from './view.js';
@@ -142,7 +143,7 @@ let surfaces = [];
 /** @type {(frame: Frame, how: PaintedAs) => void} */
 const paint = (frame, how) => painter.frame({ ...frame, layers: frame.layers.map((shape, k) => surfaces[k].carried(shape)) }, how);
 
-let loading = 0;
+const loads = new Newest();
 /**
  * The revision of the pictures that the painter has.
  * @type {number | null}
@@ -163,7 +164,7 @@ async function picture(layer, index, kind) {
 }
 
 async function load() {
-  const mine = ++loading;
+  const mine = loads.begin();
   const { puppet, meshes } = store;
   clearTimeout(resting);
   registered = store.scene?.texture?.register;
@@ -172,7 +173,7 @@ async function load() {
     const all = (kind) => Promise.all(puppet.layers.map((layer, l) => Promise.all(layer.textures.map((_, k) => picture(l, k, kind)))));
     const isKnown = pictures === puppet.pictures;
     const [bitmaps, masks] = await Promise.all([isKnown ? null : all('colour'), isKnown || !puppet.nearest ? null : all('inside')]);
-    if (mine !== loading) return;
+    if (!loads.is(mine)) return;
     surfaces = meshes.map((mesh) => new Surface(mesh, null));
     painter.load(puppet, surfaces, bitmaps, masks);
     pictures = puppet.pictures;
@@ -189,10 +190,10 @@ async function load() {
 
 /** What takes longer than a picture may: while edits follow one another, nobody waits for it. */
 async function rest() {
-  const mine = loading;
+  const mine = loads.count;
   try {
     const finer = readSurfaces(await getWords('surface'));
-    if (mine !== loading) return;
+    if (!loads.is(mine)) return;
     if (finer.some(Boolean)) {
       surfaces = store.meshes.map((mesh, k) => new Surface(mesh, finer[k]));
       if (loaded) painter.load(loaded, surfaces, null);

@@ -8,6 +8,7 @@
 // pointer); `bent` (a frame that handles bend); `figures` (what was taken for the figures arrived); `drawn` and `matched` (frame or
 // match are on the screen).
 import { getJson, getWords, postJson, problemOf, readMeshes, Refused } from './api.js';
+import { OneAtATime } from './newest.js';
 
 /** @import { Edited, Frame, GestureKeys, Mesh, Op, Place, Posted, Problem, Provider, Puppet } from './answers.js' */
 /** @import { Revisions, Scene, State, StateRoute, Stretch } from './answers.js' */
@@ -272,48 +273,38 @@ export async function asked(route, body) {
   }
 }
 
+/** @typedef {{ ops: Op[], label: string, phase: 'drag' | 'done' | 'cancel' }} DragEdit */
+
+/** @type {(body: DragEdit) => Promise<void>} */
+async function sendDragged(body) {
+  try {
+    await take(await postJson('edit', body));
+  } catch (error) {
+    if (body.phase !== 'drag') told(problemOf(error));
+  }
+}
+
 /** An edit that follows a pointer: while one request is on its way only the newest other waits. */
 export class Drag {
   /** @param {string} label */
   constructor(label) {
     this.label = label;
-    /** @type {{ ops: Op[], label: string, phase: 'drag' | 'done' | 'cancel' } | null} */
-    this.waiting = null;
-    /** @type {Promise<void> | null} */
-    this.sending = null;
+    this.edits = new OneAtATime(sendDragged);
     this.begun = false;
   }
 
   /** @type {(ops: Op[]) => void} */
   to(ops) {
     this.begun = true;
-    this.waiting = { ops, label: this.label, phase: 'drag' };
-    this.sending ??= this.send();
-  }
-
-  async send() {
-    while (this.waiting) {
-      const body = this.waiting;
-      this.waiting = null;
-      try {
-        await take(await postJson('edit', body));
-      } catch (error) {
-        if (body.phase !== 'drag') told(problemOf(error));
-      }
-    }
-    this.sending = null;
+    this.edits.want({ ops, label: this.label, phase: 'drag' });
   }
 
   /** @type {(ops: Op[]) => Promise<void>} */
   async end(ops) {
-    if (!this.begun) return;
-    this.waiting = { ops, label: this.label, phase: 'done' };
-    await (this.sending ??= this.send());
+    if (this.begun) await this.edits.want({ ops, label: this.label, phase: 'done' });
   }
 
   async cancel() {
-    if (!this.begun) return;
-    this.waiting = { ops: [], label: this.label, phase: 'cancel' };
-    await (this.sending ??= this.send());
+    if (this.begun) await this.edits.want({ ops: [], label: this.label, phase: 'cancel' });
   }
 }

@@ -5,6 +5,7 @@ import { byId, clamp, follow, fixed, found, h, targetOf, updateAll } from './dom
 import { arm, isArmed, recording } from './recorder.js';
 import { iconButton, numberField, slider, toggle } from './controls.js';
 import { icon } from './icons.js';
+import { Newest } from './newest.js';
 import { edit, emit, moveTo, on, onChange, rounded, store } from './state.js';
 import { showPath } from './pad.js';
 
@@ -197,15 +198,15 @@ async function readPath() {
 
 // Gestures.
 
-let resolving = 0;
+const requests = new Newest();
 /** @type {(changes?: Partial<Settings>) => Promise<void>} */
 async function resolve(changes = {}) {
   settings = { ...settings, ...changes };
   if (!store.gesture) return;
-  const mine = ++resolving;
+  const mine = requests.begin();
   try {
     const answer = await postJson('gesture', { samples: store.gesture.samples, ...settings });
-    if (mine !== resolving || !store.gesture) return;
+    if (!requests.is(mine) || !store.gesture) return;
     Object.assign(store.gesture, answer);
     emit('gesture');
     await readPath();
