@@ -1,5 +1,5 @@
-// What the server answers, in the words of its own description (`explorer/mod.rs`, which says what each field means). For the checker alone:
-// nothing here is served. Places are lists of numbers, as many as the space has dimensions, or x, y of a drawing.
+// What the server answers, in the words of its own description (`explorer/mod.rs`, which says what each field means). For the checker
+// alone: nothing here is served. Places are lists of numbers, as many as the space has dimensions, or x, y of a drawing.
 
 export type Place = number[];
 /** x, y, x, y, ... */

@@ -27,10 +27,14 @@ if (innerWidth < 1200) {
   app.dataset.inspector = 'closed';
   panel.update();
 }
-const save = h('button', { type: 'button', class: 'main hidden', id: 'keep', title: 'Name a folder for the scene', onclick: openKeep }, 'Save…');
+const save = h('button', {
+  type: 'button', class: 'main hidden', id: 'keep', title: 'Name a folder for the scene', onclick: openKeep,
+}, 'Save…');
 byId('bar-tools').append(undo, redo, h('span', { class: 'rule' }),
-  h('button', { type: 'button', id: 'copy-command', title: 'Copy the command that draws this frame (C)', onclick: copyCommand }, icon('command'), h('span', { class: 'wide' }, 'Copy as command')),
-  h('button', { type: 'button', class: 'bordered', id: 'export', title: 'Render the animation (E)', onclick: openExport }, icon('export'), 'Export…'), save,
+  h('button', { type: 'button', id: 'copy-command', title: 'Copy the command that draws this frame (C)', onclick: copyCommand },
+    icon('command'), h('span', { class: 'wide' }, 'Copy as command')),
+  h('button', { type: 'button', class: 'bordered', id: 'export', title: 'Render the animation (E)', onclick: openExport },
+    icon('export'), 'Export…'), save,
   h('span', { class: 'rule' }), iconButton('keyboard', 'Keys', openKeys), theme, panel);
 
 const saved = byId('saved');
@@ -39,7 +43,8 @@ found(app, '.centre')?.prepend(banner);
 
 function drawState() {
   const { state } = store;
-  for (const { button, label, name } of [{ button: undo, label: state.undo, name: 'Undo' }, { button: redo, label: state.redo, name: 'Redo' }]) {
+  const steps = [{ button: undo, label: state.undo, name: 'Undo' }, { button: redo, label: state.redo, name: 'Redo' }];
+  for (const { button, label, name } of steps) {
     button.disabled = !label;
     button.title = label ? `${name}: ${label}` : name;
     button.setAttribute('aria-label', button.title);
@@ -62,35 +67,49 @@ function drawState() {
   banner.classList.toggle('hidden', !shown);
   if (!shown) return;
   if (state.conflict) {
-    banner.replaceChildren(icon('warn'), h('span', { class: 'grow' }, 'The scene file was changed by another program, and there are edits here that are not in it.'),
+    const text = 'The scene file was changed by another program, and there are edits here that are not in it.';
+    banner.replaceChildren(icon('warn'), h('span', { class: 'grow' }, text),
       h('button', { type: 'button', class: 'bordered', onclick: () => asked('conflict', { take: 'theirs' }) }, 'Read the file'),
       h('button', { type: 'button', class: 'bordered', onclick: () => asked('conflict', { take: 'mine' }) }, 'Keep what is here'));
   } else if (state.save_error) {
-    banner.replaceChildren(icon('warn'), h('span', { class: 'grow' }, `Not saved: ${state.save_error}`), h('button', { type: 'button', class: 'bordered', onclick: () => asked('save', {}) }, 'Try again'));
+    banner.replaceChildren(icon('warn'), h('span', { class: 'grow' }, `Not saved: ${state.save_error}`),
+      h('button', { type: 'button', class: 'bordered', onclick: () => asked('save', {}) }, 'Try again'));
   } else {
-    const where = [first?.landmark && `landmark ${first.landmark}`, first?.pose && `pose ${first.pose}`, first?.line && `line ${first.line}`].filter(Boolean).join(', ');
-    banner.replaceChildren(icon('warn'), h('span', { class: 'grow' }, first?.message ?? 'The scene cannot be mapped.', where ? h('span', { class: 'faint' }, ` ${where}`) : null, broken ? null : h('span', { class: 'faint' }, ' The last good shape is shown.')),
-      h('button', { type: 'button', class: 'bordered', onclick: () => emit('tab', first?.where === 'landmark' ? 'landmarks' : 'problems') }, 'Show'));
+    const parts = [first?.landmark && `landmark ${first.landmark}`, first?.pose && `pose ${first.pose}`,
+      first?.line && `line ${first.line}`];
+    const where = parts.filter(Boolean).join(', ');
+    const tab = first?.where === 'landmark' ? 'landmarks' : 'problems';
+    banner.replaceChildren(icon('warn'), h('span', { class: 'grow' }, first?.message ?? 'The scene cannot be mapped.',
+      where ? h('span', { class: 'faint' }, ` ${where}`) : null,
+      broken ? null : h('span', { class: 'faint' }, ' The last good shape is shown.')),
+      h('button', { type: 'button', class: 'bordered', onclick: () => emit('tab', tab) }, 'Show'));
   }
 }
 
 // Over the picture.
 
-const main = segments('View', [['picture', 'Picture'], ['matches', 'Matches'], ['drawings', 'Drawings']], () => store.view.main, (value) => look({ main: value }));
+const main = segments('View', [['picture', 'Picture'], ['matches', 'Matches'], ['drawings', 'Drawings']],
+  () => store.view.main, (value) => look({ main: value }));
 const tool = segments('Dragging the picture', [
-  ['reach', icon('reach'), 'Pose: drag the drawing along the plane'], ['bend', icon('bend'), 'Bend: drag handles to a new pose'], ['pan', icon('hand'), 'Move the view'],
+  ['reach', icon('reach'), 'Pose: drag the drawing along the plane'], ['bend', icon('bend'), 'Bend: drag handles to a new pose'],
+  ['pan', icon('hand'), 'Move the view'],
 ], () => store.view.tool, (value) => look({ tool: value }));
-const onion = segments('Onion skin', [['off', 'None'], ['poses', 'Poses'], ['path', 'Path']], () => store.view.onion, (value) => look({ onion: value }));
+const onion = segments('Onion skin', [['off', 'None'], ['poses', 'Poses'], ['path', 'Path']],
+  () => store.view.onion, (value) => look({ onion: value }));
 const mesh = toggle('mesh', 'Mesh (M)', () => store.view.mesh, (value) => look({ mesh: value }));
 mesh.id = 'mesh';
-const places = toggle('places', 'The place under the pointer, in all drawings (P)', () => store.view.places, (value) => look({ places: value }));
+const places = toggle('places', 'The place under the pointer, in all drawings (P)',
+  () => store.view.places, (value) => look({ places: value }));
 places.id = 'show-places';
-const marks = segments('New landmarks', [['point', icon('point'), 'Points: click where it is (L)'], ['line', icon('line'), 'Lines: click from point to point (L)']], () => store.view.mark, (value) => look({ mark: value }));
+const marks = segments('New landmarks', [
+  ['point', icon('point'), 'Points: click where it is (L)'], ['line', icon('line'), 'Lines: click from point to point (L)'],
+], () => store.view.mark, (value) => look({ mark: value }));
 const percent = h('button', { type: 'button', class: 'percent', title: 'Actual size (Shift 0)', id: 'actual-size', onclick: actualSize });
 const ofPicture = [tool, h('span', { class: 'onion' }, icon('onion'), onion), places];
 const told = h('span', { class: 'faint small clip' });
 byId('picture-tools').append(main, h('span', { class: 'rule' }), ...ofPicture, marks, mesh, told, h('span', { class: 'grow' }),
-  h('span', { class: 'tools zoom' }, iconButton('minus', 'Zoom out', () => zoomBy(0.8)), percent, iconButton('plus', 'Zoom in', () => zoomBy(1.25)), iconButton('fit', 'Fit (0)', fit)));
+  h('span', { class: 'tools zoom' }, iconButton('minus', 'Zoom out', () => zoomBy(0.8)), percent,
+    iconButton('plus', 'Zoom in', () => zoomBy(1.25)), iconButton('fit', 'Fit (0)', fit)));
 
 function drawView() {
   [main, tool, onion, marks, mesh, places].forEach((control) => control.update());

@@ -94,7 +94,10 @@ export async function measure() {
   const say = (name, value) => table.append(h('tr', {}, h('th', { scope: 'row' }, name), h('td', {}, value)));
   /** @type {Record<string, unknown>} */
   const result = { painter: byId('picture').dataset.painter };
-  say('Scene', `${store.scene.name}: ${store.puppet.layers.reduce((sum, layer) => sum + layer.vertices, 0)} vertices, ${store.puppet.layers.reduce((sum, layer) => sum + layer.triangles, 0)} triangles, ${store.scene.poses.length} poses`);
+  /** @type {(of: 'vertices' | 'triangles') => number} */
+  const total = (of) => store.puppet.layers.reduce((sum, layer) => sum + layer[of], 0);
+  const counts = `${total('vertices')} vertices, ${total('triangles')} triangles, ${store.scene.poses.length} poses`;
+  say('Scene', `${store.scene.name}: ${counts}`);
   const { width, height, dataset } = byId('picture');
   say('Canvas', `${width} × ${height} pixels, painted by the ${dataset.painter === 'card' ? 'graphics card' : 'processor'}`);
 
@@ -148,7 +151,8 @@ export async function measure() {
   }
   counting = false;
   const seconds = (performance.now() - begun) / 1000;
-  result.drag = { drawn: drawn / seconds, displayed: displays / seconds, latency: { median: quantile(latencies, 0.5), high: quantile(latencies, 0.95) } };
+  const latency = { median: quantile(latencies, 0.5), high: quantile(latencies, 0.95) };
+  result.drag = { drawn: drawn / seconds, displayed: displays / seconds, latency };
   say('While dragging', `${(drawn / seconds).toFixed(1)} frames a second drawn, ${(displays / seconds).toFixed(1)} displayed`);
   say('From moving to drawn', shown(latencies));
   wantFrame();

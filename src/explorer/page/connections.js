@@ -5,7 +5,10 @@
 // A connection carries one request at a time. A request that finds none free goes by fetch, and one more is opened for the next.
 
 /** @typedef {'GET' | 'POST'} Method */
-/** @typedef {`${Method} ${string}\n${string}`} Message A text message of the socket: method and route, then the body as JSON, if there is one. */
+/**
+ * A text message of the socket: method and route, then the body as JSON, if there is one.
+ * @typedef {`${Method} ${string}\n${string}`} Message
+ */
 /** @typedef {{ status: number, bytes: Uint8Array<ArrayBuffer>, text: () => string }} Answer A binary message of the socket, taken apart. */
 
 /** Connections at a time: one waits for the next state, the others are for what moves at once. */

@@ -26,12 +26,15 @@ export function toggle(name, label, isOn, flip) {
 
 /**
  * One of some values: [value, text or icon, label]. Arrow keys go from one to the next.
- * @type {<V extends string>(label: string, choices: [V, string | SVGElement, string?][], current: () => V | null | undefined, choose: (value: V) => void) => HTMLDivElement & Updated}
+ * @type {<V extends string>(
+ *   label: string, choices: [V, string | SVGElement, string?][], current: () => V | null | undefined, choose: (value: V) => void,
+ * ) => HTMLDivElement & Updated}
  */
 export function segments(label, choices, current, choose) {
   const buttons = choices.map(([value, shown, title]) =>
     h('button', {
-      type: 'button', role: 'radio', 'aria-label': title ?? shown, title: title ?? null, 'data-value': value, class: title && typeof shown !== 'string' ? 'square' : null,
+      type: 'button', role: 'radio', 'aria-label': title ?? shown, title: title ?? null, 'data-value': value,
+      class: title && typeof shown !== 'string' ? 'square' : null,
       onclick: () => choose(value),
     }, shown));
   const group = /** @type {HTMLDivElement & Updated} */ (h('div', { class: 'segments', role: 'radiogroup', 'aria-label': label }, buttons));
@@ -40,7 +43,8 @@ export function segments(label, choices, current, choose) {
     if (!step) return;
     event.preventDefault();
     event.stopPropagation();
-    const next = buttons[(buttons.indexOf(/** @type {HTMLButtonElement} */ (document.activeElement)) + step + buttons.length) % buttons.length];
+    const here = buttons.indexOf(/** @type {HTMLButtonElement} */ (document.activeElement));
+    const next = buttons[(here + step + buttons.length) % buttons.length];
     next.click();
     next.focus();
   });
@@ -57,7 +61,10 @@ export function segments(label, choices, current, choose) {
 
 /**
  * A number: `take(value)` is called when a new one is entered. `update` shows what `current` says.
- * @type {(label: string, current: () => number | null | undefined, take: (value: number) => void, options?: Properties & { step?: number, digits?: number }) => HTMLInputElement & Updated}
+ * @type {(
+ *   label: string, current: () => number | null | undefined, take: (value: number) => void,
+ *   options?: Properties & { step?: number, digits?: number },
+ * ) => HTMLInputElement & Updated}
  */
 export function numberField(label, current, take, { step = 0.01, digits = 4, ...properties } = {}) {
   const made = h('input', { type: 'number', step: 'any', 'aria-label': label, inputmode: 'decimal', ...properties });
@@ -96,7 +103,10 @@ export function numberField(label, current, take, { step = 0.01, digits = 4, ...
 
 /**
  * A slider with its number. `drag(value)` while it moves, `take(value)` when it is let go.
- * @type {(label: string, range: { min: number, max: number, step: number, digits?: number }, current: () => number, drag: ((value: number) => void) | null, take: (value: number) => void) => HTMLLabelElement & Updated}
+ * @type {(
+ *   label: string, range: { min: number, max: number, step: number, digits?: number }, current: () => number,
+ *   drag: ((value: number) => void) | null, take: (value: number) => void,
+ * ) => HTMLLabelElement & Updated}
  */
 export function slider(label, { min, max, step, digits = 2 }, current, drag, take) {
   const number = h('output', { class: 'number' });
@@ -126,7 +136,9 @@ export function slider(label, { min, max, step, digits = 2 }, current, drag, tak
 
 /**
  * A choice from a menu.
- * @type {<V extends string>(label: string, choices: [V, string][], current: () => V | undefined, take: (value: V) => void) => HTMLSelectElement & Updated}
+ * @type {<V extends string>(
+ *   label: string, choices: [V, string][], current: () => V | undefined, take: (value: V) => void,
+ * ) => HTMLSelectElement & Updated}
  */
 export function menu(label, choices, current, take) {
   const made = h('select', { 'aria-label': label, onchange: () => take(/** @type {typeof choices[number][0]} */ (select.value)) },
@@ -141,4 +153,5 @@ export function menu(label, choices, current, take) {
  * A label beside a control.
  * @type {(label: string, ...controls: Child[]) => HTMLDivElement}
  */
-export const row = (label, ...controls) => h('div', { class: 'row' }, h('span', { class: 'label' }, label), h('div', { class: 'controls' }, ...controls));
+export const row = (label, ...controls) =>
+  h('div', { class: 'row' }, h('span', { class: 'label' }, label), h('div', { class: 'controls' }, ...controls));

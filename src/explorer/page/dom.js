@@ -33,11 +33,15 @@ export function s(tag, properties = {}, ...children) {
   return filled(document.createElementNS(SVG, tag), properties, children);
 }
 
+/** @type {(element: HTMLElement | SVGElement, properties: Record<string, string>) => void} */
+const setStyle = (element, properties) =>
+  Object.entries(properties).forEach(([key, value]) => element.style.setProperty(key, value));
+
 /** @type {<E extends HTMLElement | SVGElement>(element: E, properties: Properties, children: Child[]) => E} */
 function filled(element, properties, children) {
   for (const [name, value] of Object.entries(properties)) {
     if (name.startsWith('on')) element.addEventListener(name.slice(2).toLowerCase(), /** @type {EventListener} */ (value));
-    else if (name === 'style') Object.entries(/** @type {Record<string, string>} */ (value)).forEach(([key, v]) => element.style.setProperty(key, v));
+    else if (name === 'style') setStyle(element, /** @type {Record<string, string>} */ (value));
     else if (value === true) element.setAttribute(name, '');
     else if (value !== null && value !== undefined && value !== false) element.setAttribute(name, String(value));
   }

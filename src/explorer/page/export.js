@@ -24,20 +24,25 @@ const width = h('input', { type: 'number', min: 1, 'aria-label': 'Width' });
 const height = h('input', { type: 'number', min: 1, 'aria-label': 'Height' });
 const fps = h('input', { type: 'number', min: 1 });
 const frames = h('input', { type: 'text', placeholder: 'all, or 1-48' });
-const background = h('select', {}, [['', 'As in the scene'], ['transparent', 'Transparent'], ['white', 'White'], ['black', 'Black']].map(([value, text]) => h('option', { value }, text)));
-const supersample = h('select', {}, [['', 'Default'], ['1', '1'], ['2', '2 × 2'], ['3', '3 × 3'], ['4', '4 × 4']].map(([value, text]) => h('option', { value }, text)));
+/** @type {(choices: string[][]) => HTMLSelectElement} */
+const select = (choices) => h('select', {}, choices.map(([value, text]) => h('option', { value }, text)));
+const background = select([['', 'As in the scene'], ['transparent', 'Transparent'], ['white', 'White'], ['black', 'Black']]);
+const supersample = select([['', 'Default'], ['1', '1'], ['2', '2 × 2'], ['3', '3 × 3'], ['4', '4 × 4']]);
 const command = h('code', { class: 'command', tabindex: '0' });
 const bar = h('progress', { max: 1, value: 0, 'aria-label': 'Progress' });
 const said = h('p', { class: 'small said', role: 'status' });
 const start = h('button', { type: 'submit', class: 'main', id: 'export-start' }, 'Render');
-const cancel = h('button', { type: 'button', class: 'bordered', id: 'export-cancel', onclick: () => asked('export/cancel', {}) }, 'Cancel render');
+const cancel = h('button', {
+  type: 'button', class: 'bordered', id: 'export-cancel', onclick: () => asked('export/cancel', {}),
+}, 'Cancel render');
 const form = h('form', { method: 'dialog', onsubmit: (event) => {
   event.preventDefault();
   asked('export', fields());
 } },
 h('header', {}, h('h2', {}, 'Export'), h('span', { class: 'grow' }), iconButton('close', 'Close', () => dialog.close())),
 field('Format', format), field('File', output),
-h('div', { class: 'row' }, h('span', { class: 'label' }, 'Size'), h('div', { class: 'controls' }, width, h('span', { class: 'faint' }, '×'), height)),
+h('div', { class: 'row' }, h('span', { class: 'label' }, 'Size'),
+  h('div', { class: 'controls' }, width, h('span', { class: 'faint' }, '×'), height)),
 field('Frames a second', fps), field('Frames', frames), field('Background', background), field('Samples', supersample),
 h('div', { class: 'command-line' }, command, iconButton('copy', 'Copy the command', () => copied(command.textContent))),
 h('div', { class: 'progress hidden' }, bar, said),
@@ -97,8 +102,9 @@ function showJob() {
   else if (running) bar.removeAttribute('value');
   if (job.state === 'done') bar.value = 1;
   said.dataset.state = job.state;
+  const left = job.left > 1 ? `, ${Math.ceil(job.left)} s left` : '';
   said.textContent = {
-    running: () => `${job.output}: ${job.total ? `frame ${job.done} of ${job.total}` : 'starting'}${job.left > 1 ? `, ${Math.ceil(job.left)} s left` : ''}`,
+    running: () => `${job.output}: ${job.total ? `frame ${job.done} of ${job.total}` : 'starting'}${left}`,
     done: () => `${job.output}: done in ${job.seconds.toFixed(1)} s`,
     failed: () => `${job.output}: ${job.message ?? 'failed'}`,
     cancelled: () => `${job.output}: cancelled`,
@@ -109,7 +115,10 @@ function showJob() {
 let told = null;
 on('state', () => {
   const job = store.state.job;
-  if (job && !dialog.open && told !== `${job.id} ${job.state}` && job.state !== 'running' && told !== null) toast(said.textContent || `${job.output}: ${job.state}`, { kind: job.state === 'failed' ? 'problem' : 'note' });
+  const hasEnded = job && told !== null && told !== `${job.id} ${job.state}` && job.state !== 'running';
+  if (hasEnded && !dialog.open) {
+    toast(said.textContent || `${job.output}: ${job.state}`, { kind: job.state === 'failed' ? 'problem' : 'note' });
+  }
   showJob();
   told = job ? `${job.id} ${job.state}` : '';
 });

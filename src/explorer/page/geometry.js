@@ -66,6 +66,8 @@ export const isUpright = ([a, b, c], points) => doubledArea(points, a, b, c) > 0
  */
 export function trianglesArea(triangles, points) {
   let doubled = 0;
-  for (let t = 0; t < triangles.length; t += 3) doubled += Math.max(0, doubledArea(points, triangles[t], triangles[t + 1], triangles[t + 2]));
+  for (let t = 0; t < triangles.length; t += 3) {
+    doubled += Math.max(0, doubledArea(points, triangles[t], triangles[t + 1], triangles[t + 2]));
+  }
   return 0.5 * doubled;
 }

@@ -182,7 +182,8 @@ const bending = new OneAtATime(async () => {
   }
   const pose = store.scene.poses[basis];
   try {
-    const words = await postWords('deform', { layer: store.layer, pose: pose.name, handles: handles.map(({ from, to }) => ({ from, to })) });
+    const moved = handles.map(({ from, to }) => ({ from, to }));
+    const words = await postWords('deform', { layer: store.layer, pose: pose.name, handles: moved });
     const vertices = words.u32();
     const inverted = words.u32();
     const positions = words.f32s(2 * vertices);
@@ -208,7 +209,8 @@ function bentFrame(positions, inverted) {
       const points = k === store.layer ? positions : store.meshes[k].poses[Math.max(own, 0)];
       const rings = (edges[k] ?? []).map((ring) => Float32Array.from(ring.flatMap((carrier) => placed(carrier, points))));
       return {
-        opacity: own < 0 ? 0 : 1, positions: points, rings, inverted: new Uint32Array(0), weights: single(layer.poses.length, Math.max(own, 0)),
+        opacity: own < 0 ? 0 : 1, positions: points, rings, inverted: new Uint32Array(0),
+        weights: single(layer.poses.length, Math.max(own, 0)),
         textureWeights: single(layer.textures.length, layer.texture_of[Math.max(own, 0)]),
       };
     }),
@@ -243,11 +245,12 @@ async function keep() {
   const of = store.scene.poses[basis];
   const many = store.scene.layers.length > 1 || store.scene.layers[0]?.name !== store.scene.name;
   const layer = many ? store.scene.layers[store.layer].name : undefined;
+  const written = handles.map(({ from, to }) => ({ from: from.map((v) => rounded(v, 2)), to: to.map((v) => rounded(v, 2)) }));
   const op = editing ? {
-    op: 'set_handles', pose: editing, handles: handles.map(({ from, to }) => ({ from: from.map((v) => rounded(v, 2)), to: to.map((v) => rounded(v, 2)) })),
+    op: 'set_handles', pose: editing, handles: written,
   } : {
     op: 'add_deformed_pose', of: of.name, at: store.place.map((v) => rounded(v)),
-    handles: handles.map(({ from, to }) => ({ from: from.map((v) => rounded(v, 2)), to: to.map((v) => rounded(v, 2)), ...(layer ? { layer } : {}) })),
+    handles: written.map((handle) => ({ ...handle, ...(layer ? { layer } : {}) })),
   };
   const state = await edit([op], editing ? `move handles of '${editing}'` : `add a pose bent from '${of.name}'`);
   if (state) emit('tool', 'reach');
@@ -280,11 +283,19 @@ function drawBar() {
   const now = `${pose} ${editing ?? ''} ${handles.length}`;
   if (said === now) return;
   said = now;
-  const hint = editing ? 'Drag its handles, or click to add one.' : handles.length < 2 ? 'Click on the drawing to pin it, drag to bend it.' : `Becomes a pose at the probe.`;
+  const hint = editing ? 'Drag its handles, or click to add one.'
+    : handles.length < 2 ? 'Click on the drawing to pin it, drag to bend it.' : 'Becomes a pose at the probe.';
+  const disabled = handles.length === 0;
+  const clear = () => {
+    handles = [];
+    deform();
+    said = '';
+    drawHandles();
+  };
   bar.replaceChildren(
     h('span', {}, 'Bending ', h('b', {}, editing ?? pose)), h('span', { class: 'faint clip' }, hint),
-    h('button', { type: 'button', class: 'bordered', disabled: handles.length === 0, onclick: () => { handles = []; deform(); said = ''; drawHandles(); } }, 'Clear'),
-    h('button', { type: 'button', class: 'main', id: 'keep-bent', disabled: handles.length === 0, onclick: keep }, editing ? 'Save handles' : 'Add pose'));
+    h('button', { type: 'button', class: 'bordered', disabled, onclick: clear }, 'Clear'),
+    h('button', { type: 'button', class: 'main', id: 'keep-bent', disabled, onclick: keep }, editing ? 'Save handles' : 'Add pose'));
 }
 
 on('view', (changes) => {

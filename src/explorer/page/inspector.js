@@ -6,7 +6,7 @@ import { icon } from './icons.js';
 import { readingPanel } from './reading.js';
 import { choosePose, Drag, edit, look, moveTo, on, onChange, rounded, store } from './state.js';
 
-/** @import { Op, Problem } from './answers.js' */
+/** @import { Op, Place, Problem } from './answers.js' */
 /** @import { Child, Updated } from './dom.js' */
 /** @import { Comparison } from './state.js' */
 
@@ -29,7 +29,10 @@ list.addEventListener('keydown', (event) => {
   showTab(next.dataset.tab ?? current);
   next.focus();
 });
-const panels = Object.fromEntries(TABS.map(([name]) => [name, h('div', { class: 'panel', role: 'tabpanel', id: `panel-${name}`, 'aria-labelledby': `tab-${name}`, tabindex: '-1' })]));
+const panels = Object.fromEntries(TABS.map(([name]) => {
+  const panel = h('div', { class: 'panel', role: 'tabpanel', id: `panel-${name}`, 'aria-labelledby': `tab-${name}`, tabindex: '-1' });
+  return [name, panel];
+}));
 root.append(list, ...Object.values(panels));
 
 /** @type {(name: string) => void} */
@@ -61,7 +64,9 @@ const live = (control) => {
 
 /**
  * A slider that shows its effect while it moves, and becomes one edit.
- * @type {(label: string, range: { min: number, max: number, step: number }, value: () => number, table: string, key: string) => HTMLElement}
+ * @type {(
+ *   label: string, range: { min: number, max: number, step: number }, value: () => number, table: string, key: string,
+ * ) => HTMLElement}
  */
 function dragged(label, range, value, table, key) {
   /** @type {Drag | null} */
@@ -80,21 +85,26 @@ function buildScene() {
   updated.length = 0;
   /** @type {() => Partial<NonNullable<typeof scene.pose_space>>} */
   const space = () => store.scene.pose_space ?? {};
-  const radial = live(menu('Radial function', [['b-spline', 'B-spline'], ['thin-plate', 'Thin plate']], () => space().radial, (v) => setting('pose_space', 'radial', v)));
+  const radial = live(menu('Radial function', [['b-spline', 'B-spline'], ['thin-plate', 'Thin plate']],
+    () => space().radial, (v) => setting('pose_space', 'radial', v)));
   /** @type {(HTMLElement | null)[]} */
   const children = [
     problemsOf('file', 'space'),
     readingPanel,
     poseSection(),
     section('Weights',
-      row('Provider', live(segments('Provider', [['biharmonic', 'Biharmonic'], ['rbf', 'Radial']], () => space().provider, (v) => setting('pose_space', 'provider', v)))),
+      row('Provider', live(segments('Provider', [['biharmonic', 'Biharmonic'], ['rbf', 'Radial']],
+        () => space().provider, (v) => setting('pose_space', 'provider', v)))),
       row('Radial', radial)),
     section('Shape',
-      row('Stretch', live(segments('Stretch', [['linear', 'Linear'], ['limited', 'Limited'], ['log', 'Log']], () => store.scene.blend?.stretch, (v) => setting('blend', 'stretch', v)))),
-      row('Folds', live(segments('Guard against folds', [['off', 'Leave'], ['repair', 'Repair']], () => store.scene.blend?.guard, (v) => setting('blend', 'guard', v))))),
+      row('Stretch', live(segments('Stretch', [['linear', 'Linear'], ['limited', 'Limited'], ['log', 'Log']],
+        () => store.scene.blend?.stretch, (v) => setting('blend', 'stretch', v)))),
+      row('Folds', live(segments('Guard against folds', [['off', 'Leave'], ['repair', 'Repair']],
+        () => store.scene.blend?.guard, (v) => setting('blend', 'guard', v))))),
     section('Texture',
       dragged('Sharpness', { min: 0, max: 1, step: 0.01 }, () => store.scene.texture?.sharpness ?? 0.5, 'texture', 'sharpness'),
-      row('Colours', live(segments('Blending of colours', [['plain', 'As stored'], ['linear', 'Light']], () => store.scene.texture?.blending, (v) => setting('texture', 'blending', v)))),
+      row('Colours', live(segments('Blending of colours', [['plain', 'As stored'], ['linear', 'Light']],
+        () => store.scene.texture?.blending, (v) => setting('texture', 'blending', v)))),
       drawingRow()),
     section('Compare',
       h('p', { class: 'faint small' }, 'B is shown in place of the scene’s own settings while it is on. Hold B to flip.'),
@@ -107,7 +117,9 @@ function buildScene() {
 /** SVG drawings can be carried as curves, which are shown where the probe rests. */
 function drawingRow() {
   if (!store.scene.poses.some((pose) => /\.svg$/i.test(pose.source ?? ''))) return null;
-  return [row('Drawing', live(segments('Drawing', [['curves', 'Curves'], ['pixels', 'Pixels']], () => store.scene.texture?.drawing, (v) => setting('texture', 'drawing', v)))),
+  const drawing = live(segments('Drawing', [['curves', 'Curves'], ['pixels', 'Pixels']],
+    () => store.scene.texture?.drawing, (v) => setting('texture', 'drawing', v)));
+  return [row('Drawing', drawing),
     h('p', { class: 'faint small' }, 'Curves are shown where the probe rests; while it moves, pixels.')];
 }
 
@@ -117,16 +129,31 @@ function poseSection() {
   const index = store.pose ?? -1;
   const pose = store.scene.poses[index];
   if (!pose) return null;
-  const place = pose.at.map((_, d) => live(numberField(`${pose.name}, ${'xyz'[d] ?? d}`, () => store.scene.poses[store.pose ?? -1]?.at[d] ?? 0,
-    (value) => edit([{ op: 'move_pose', pose: pose.name, at: store.scene.poses[store.pose ?? -1].at.map((v, k) => (k === d ? value : v)) }], `move pose '${pose.name}'`))));
+  const now = () => store.scene.poses[store.pose ?? -1];
+  /** @type {(axis: number, value: number) => Promise<unknown>} */
+  const move = (axis, value) => {
+    const at = now().at.map((v, k) => (k === axis ? value : v));
+    return edit([{ op: 'move_pose', pose: pose.name, at }], `move pose '${pose.name}'`);
+  };
+  const place = pose.at.map((_, d) =>
+    live(numberField(`${pose.name}, ${'xyz'[d] ?? d}`, () => now()?.at[d] ?? 0, (value) => move(d, value))));
+  const mirrored = h('input', {
+    type: 'checkbox', 'aria-label': 'Mirrored', checked: pose.mirror === true, disabled: pose.kind !== 'drawn',
+    onchange: ({ target }) =>
+      edit([{ op: 'set_pose', pose: pose.name, key: 'mirror', value: target.checked }], `mirror pose '${pose.name}'`),
+  });
+  const remove = async () => {
+    if (await edit([{ op: 'remove_pose', pose: pose.name }], `remove pose '${pose.name}'`)) choosePose(null);
+  };
   const own = section(`Pose ${pose.name}`,
     row('Place', ...place),
-    row('Mirrored', h('input', { type: 'checkbox', 'aria-label': 'Mirrored', checked: pose.mirror === true, disabled: pose.kind !== 'drawn', onchange: (event) => edit([{ op: 'set_pose', pose: pose.name, key: 'mirror', value: event.target.checked }], `mirror pose '${pose.name}'`) })),
-    pose.deform_of ? row('Bent from', h('span', {}, pose.deform_of)) : row('Drawing', h('span', { class: 'clip', title: pose.source ?? '' }, pose.source ?? '–')),
+    row('Mirrored', mirrored),
+    pose.deform_of ? row('Bent from', h('span', {}, pose.deform_of))
+      : row('Drawing', h('span', { class: 'clip', title: pose.source ?? '' }, pose.source ?? '–')),
     problemsOf('pose', null, pose.name),
     h('div', { class: 'buttons' },
       h('button', { type: 'button', class: 'bordered', onclick: () => moveTo(pose.at.slice()) }, 'Go there'),
-      h('button', { type: 'button', class: 'bordered', onclick: () => edit([{ op: 'remove_pose', pose: pose.name }], `remove pose '${pose.name}'`).then((done) => done && choosePose(null)) }, 'Remove'),
+      h('button', { type: 'button', class: 'bordered', onclick: remove }, 'Remove'),
       h('button', { type: 'button', onclick: () => choosePose(null) }, 'Done')));
   own.classList.add('of-pose');
   return own;
@@ -145,7 +172,9 @@ export function compare(shown) {
 }
 
 function compareSection() {
-  const what = menu('What B changes', [['provider', 'Provider'], ['stretch', 'Stretch'], ['sharpness', 'Sharpness']], () => compared, (value) => {
+  /** @type {[keyof Comparison, string][]} */
+  const settings = [['provider', 'Provider'], ['stretch', 'Stretch'], ['sharpness', 'Sharpness']];
+  const what = menu('What B changes', settings, () => compared, (value) => {
     compared = value;
     const own = store.scene;
     /** @type {Record<keyof Comparison, Comparison>} */
@@ -159,9 +188,12 @@ function compareSection() {
     draw();
   });
   const values = {
-    provider: () => segments('Provider of B', [['biharmonic', 'Biharmonic'], ['rbf', 'Radial']], () => other.provider, (v) => change({ provider: v })),
-    stretch: () => segments('Stretch of B', [['linear', 'Linear'], ['limited', 'Limited'], ['log', 'Log']], () => other.stretch, (v) => change({ stretch: v })),
-    sharpness: () => slider('B', { min: 0, max: 1, step: 0.01 }, () => other.sharpness ?? 0, (v) => change({ sharpness: v }), (v) => change({ sharpness: v })),
+    provider: () => segments('Provider of B', [['biharmonic', 'Biharmonic'], ['rbf', 'Radial']],
+      () => other.provider, (v) => change({ provider: v })),
+    stretch: () => segments('Stretch of B', [['linear', 'Linear'], ['limited', 'Limited'], ['log', 'Log']],
+      () => other.stretch, (v) => change({ stretch: v })),
+    sharpness: () => slider('B', { min: 0, max: 1, step: 0.01 },
+      () => other.sharpness ?? 0, (v) => change({ sharpness: v }), (v) => change({ sharpness: v })),
   };
   const place = h('div', {});
   /** @type {(value: Comparison) => void} */
@@ -172,24 +204,30 @@ function compareSection() {
   };
   const draw = () => place.replaceChildren(values[compared]());
   draw();
-  const ab = live(segments('Shown', [['a', 'A: scene'], ['b', 'B']], () => (store.view.compare ? 'b' : 'a'), (value) => compare(value === 'b')));
+  const ab = live(segments('Shown', [['a', 'A: scene'], ['b', 'B']],
+    () => (store.view.compare ? 'b' : 'a'), (value) => compare(value === 'b')));
   ab.id = 'compare';
   return [row('Change', what), h('div', { class: 'indent' }, place), row('Show', ab)];
 }
+
+/** Where the probe is, as a scene says it. */
+const probe = () => store.place.map((v) => rounded(v));
 
 // Pseudo-poses.
 
 function pseudoSection() {
   const { scene } = store;
+  /** @type {(place: Place) => string} */
+  const text = (place) => place.map((v) => rounded(v, 2)).join(', ');
   const shown = scene.pseudo_poses.map((pseudo, index) => h('div', { class: 'item' },
-    h('span', { class: 'grow clip' }, `${pseudo.from.map((v) => rounded(v, 2)).join(', ')} → ${pseudo.at.map((v) => rounded(v, 2)).join(', ')}`),
+    h('span', { class: 'grow clip' }, `${text(pseudo.from)} → ${text(pseudo.at)}`),
     iconButton('trash', `Remove pseudo-pose ${index + 1}`, () => edit([{ op: 'remove_pseudo_pose', index }], 'remove a pseudo-pose'))));
   return section('Pseudo-poses',
     h('p', { class: 'faint small' }, 'A place that shows the weights of another one. Drag its ends in the plane.'),
     ...shown,
     h('div', { class: 'buttons' }, h('button', {
       type: 'button', class: 'bordered', id: 'add-pseudo',
-      onclick: () => edit([{ op: 'add_pseudo_pose', from: store.place.map((v) => rounded(v)), at: store.place.map((v) => rounded(v)) }], 'add a pseudo-pose'),
+      onclick: () => edit([{ op: 'add_pseudo_pose', from: probe(), at: probe() }], 'add a pseudo-pose'),
     }, icon('plus'), 'At the probe')));
 }
 
@@ -203,7 +241,10 @@ function buildKeys() {
   /** @type {(label: string) => Promise<unknown>} */
   const changed = (label) => edit([{ op: 'set_keys', keys: keys.slice().sort((a, b) => a.time - b.time) }], label);
   const rows = keys.map((key, index) => h('tr', {},
-    h('td', {}, numberField(`Time of key ${index + 1}`, () => key.time, (value) => { key.time = value; changed('move a key'); }, { digits: 3, step: 0.05 })),
+    h('td', {}, numberField(`Time of key ${index + 1}`, () => key.time, (value) => {
+      key.time = value;
+      changed('move a key');
+    }, { digits: 3, step: 0.05 })),
     ...key.at.map((_, d) => h('td', {}, numberField(`${'xyz'[d] ?? d} of key ${index + 1}`, () => key.at[d], (value) => {
       // A loop that ends where it begins still does.
       if (closes && (index === 0 || index === keys.length - 1)) [keys[0], keys[keys.length - 1]].forEach((end) => (end.at[d] = value));
@@ -213,19 +254,28 @@ function buildKeys() {
     h('td', {}, iconButton('reach', `Go to key ${index + 1}`, () => moveTo(key.at.slice()))),
     h('td', {}, iconButton('trash', `Remove key ${index + 1}`, () => { keys.splice(index, 1); changed('remove a key'); }))));
   const names = keys[0]?.at.map((_, d) => h('th', { scope: 'col' }, 'xyz'[d] ?? `p${d + 1}`)) ?? [];
-  const headings = h('tr', {}, h('th', { scope: 'col' }, 'Time'), names, h('th', {}, h('span', { class: 'unseen' }, 'Go')), h('th', {}, h('span', { class: 'unseen' }, 'Remove')));
+  /** @type {(text: string) => HTMLElement} */
+  const unseen = (text) => h('th', {}, h('span', { class: 'unseen' }, text));
+  const headings = h('tr', {}, h('th', { scope: 'col' }, 'Time'), names, unseen('Go'), unseen('Remove'));
+  const { size } = animation;
+  const sizes = [0, 1].map((d) => numberField(['Width', 'Height'][d], () => size[d],
+    (v) => setting('animation', 'size', size.map((own, k) => (k === d ? Math.round(v) : own))), { step: 10 }));
   panels.keys.replaceChildren(
     h('div', { class: 'section' },
       problemsOf('animation'),
-      animation.own_keys ? null : h('p', { class: 'faint small' }, 'The scene has no keys of its own: the path visits every pose. Changing one makes them the scene’s own.'),
+      animation.own_keys ? null : h('p', { class: 'faint small' },
+        'The scene has no keys of its own: the path visits every pose. Changing one makes them the scene’s own.'),
       h('table', { class: 'keys' }, h('thead', {}, headings), h('tbody', {}, rows)),
       h('div', { class: 'buttons' }, h('button', {
         type: 'button', class: 'bordered',
-        onclick: () => { keys.push({ time: rounded((keys.at(-1)?.time ?? -1) + 1, 3), at: store.place.map((v) => rounded(v)) }); changed('add a key'); },
+        onclick: () => {
+          keys.push({ time: rounded((keys.at(-1)?.time ?? -1) + 1, 3), at: probe() });
+          changed('add a key');
+        },
       }, icon('plus'), 'Key at the probe'))),
     section('Playing',
       row('Frame rate', numberField('Frames a second', () => animation.fps, (v) => setting('animation', 'fps', v), { step: 1 })),
-      row('Frame size', ...[0, 1].map((d) => numberField(['Width', 'Height'][d], () => animation.size[d], (v) => setting('animation', 'size', animation.size.map((own, k) => (k === d ? Math.round(v) : own))), { step: 10 })))));
+      row('Frame size', ...sizes)));
 }
 
 // Problems.
@@ -235,14 +285,19 @@ function buildKeys() {
  * @type {(where: Where, also?: Where | null, name?: string | null) => HTMLElement | null}
  */
 export function problemsOf(...[where, also = null, name = null]) {
-  const own = (store.state?.problems ?? store.scene?.problems ?? []).filter((problem) => (problem.where === where || (also && problem.where === also)) && (!name || problem[/** @type {'pose' | 'landmark'} */ (where)] === name));
+  const named = /** @type {'pose' | 'landmark'} */ (where);
+  const own = (store.state?.problems ?? store.scene?.problems ?? []).filter((problem) =>
+    (problem.where === where || (also && problem.where === also)) && (!name || problem[named] === name));
   return own.length > 0 ? h('div', { class: 'problems' }, own.map(problemItem)) : null;
 }
 
 /** @type {(problem: Problem) => HTMLElement} */
 function problemItem(problem) {
-  const where = [problem.landmark && `landmark ${problem.landmark}`, problem.pose && `pose ${problem.pose}`, problem.layer && `layer ${problem.layer}`, problem.line && `line ${problem.line}`].filter(Boolean).join(', ');
-  return h('div', { class: 'problem' }, icon('warn'), h('div', {}, h('p', {}, problem.message), where && h('p', { class: 'faint small' }, where)));
+  const parts = [problem.landmark && `landmark ${problem.landmark}`, problem.pose && `pose ${problem.pose}`,
+    problem.layer && `layer ${problem.layer}`, problem.line && `line ${problem.line}`];
+  const where = parts.filter(Boolean).join(', ');
+  return h('div', { class: 'problem' }, icon('warn'),
+    h('div', {}, h('p', {}, problem.message), where && h('p', { class: 'faint small' }, where)));
 }
 
 function buildProblems() {
@@ -251,7 +306,8 @@ function buildProblems() {
   const tab = byId('tab-problems');
   tab.replaceChildren('Problems', ...(problems.length > 0 ? [h('span', { class: 'count' }, String(problems.length))] : []));
   panels.problems.replaceChildren(
-    ...(problems.length > 0 ? [h('section', { class: 'section' }, problems.map(problemItem))] : [h('p', { class: 'empty' }, 'The scene has no problems.')]),
+    problems.length > 0 ? h('section', { class: 'section' }, problems.map(problemItem))
+      : h('p', { class: 'empty' }, 'The scene has no problems.'),
     ...(notes.length > 0 ? [section('Notes', notes.map((note) => h('p', { class: 'small' }, note)))] : []));
 }
 
@@ -264,7 +320,8 @@ let shape = '';
 const besides = () => [store.pose, store.state?.problems, { ...store.scene, landmarks: null, revision: null, notes: null }];
 onChange('scene pose', besides, () => {
   // While a control is held it must not be made anew.
-  const now = JSON.stringify([store.pose, store.scene.poses.map((pose) => [pose.name, pose.mirror]), store.scene.pseudo_poses, store.scene.dimension]);
+  const { poses, pseudo_poses: pseudo, dimension } = store.scene;
+  const now = JSON.stringify([store.pose, poses.map((pose) => [pose.name, pose.mirror]), pseudo, dimension]);
   if (now !== shape || !busy()) {
     shape = now;
     const label = focused()?.getAttribute('aria-label');

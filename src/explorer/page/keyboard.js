@@ -28,10 +28,12 @@ const KEYS = [
   [['M'], 'Mesh', (e) => e.key === 'm', () => look({ mesh: !store.view.mesh })],
   [['P'], 'The place under the pointer, in all drawings', (e) => e.key === 'p', () => look({ places: !store.view.places })],
   [['O'], 'Onion skin: off, poses, path', (e) => e.key === 'o', () => look({ onion: cycle(['off', 'poses', 'path'], store.view.onion) })],
-  [['W'], 'The plane shows: nothing, weight, validity', (e) => e.key === 'w', () => look({ map: cycle(['plain', 'weight', 'validity'], store.view.map) })],
+  [['W'], 'The plane shows: nothing, weight, validity', (e) => e.key === 'w',
+    () => look({ map: cycle(['plain', 'weight', 'validity'], store.view.map) })],
   [['S'], 'Snap', (e) => e.key === 's', () => look({ snap: !store.view.snap })],
   [['B'], 'Compare: hold for B', null],
-  [['Tab', 'V'], 'Picture, matches or drawings', (e) => e.key === 'v', () => look({ main: cycle(['picture', 'matches', 'drawings'], store.view.main) })],
+  [['Tab', 'V'], 'Picture, matches or drawings', (e) => e.key === 'v',
+    () => look({ main: cycle(['picture', 'matches', 'drawings'], store.view.main) })],
   [['L'], 'New landmarks: points or lines', (e) => e.key === 'l', () => look({ mark: store.view.mark === 'line' ? 'point' : 'line' })],
   [['0'], 'Fit; with Shift, actual size', (e) => e.code === 'Digit0', (e) => (e.shiftKey ? actualSize() : fit())],
   [['+', '−'], 'Zoom', (e) => ['+', '=', '-'].includes(e.key), (e) => zoomBy(e.key === '-' ? 0.8 : 1.25)],
@@ -59,7 +61,8 @@ const inField = (target) => target.closest?.('input:not([type="range"], [type="c
 
 window.addEventListener('keydown', (event) => {
   const modified = event.ctrlKey || event.metaKey;
-  if (modified && !event.altKey && ['z', 'y', 'Z'].includes(event.key) && !document.querySelector('dialog[open]') && /** @type {HTMLInputElement} */ (event.target).type !== 'text') {
+  const isUndo = modified && !event.altKey && ['z', 'y', 'Z'].includes(event.key);
+  if (isUndo && !document.querySelector('dialog[open]') && /** @type {HTMLInputElement} */ (event.target).type !== 'text') {
     event.preventDefault();
     const redo = event.key === 'y' || event.shiftKey;
     if (redo ? store.state?.redo : store.state?.undo) asked(redo ? 'redo' : 'undo', {});
@@ -91,7 +94,8 @@ window.addEventListener('keydown', (event) => {
     goTo(numbered);
     return;
   }
-  const bound = KEYS.find(([, , match]) => match?.({ key: event.key.length === 1 ? event.key.toLowerCase() : event.key, code: event.code }));
+  const pressed = { key: event.key.length === 1 ? event.key.toLowerCase() : event.key, code: event.code };
+  const bound = KEYS.find(([, , match]) => match?.(pressed));
   if (!bound) return;
   event.preventDefault();
   bound[3]?.(event);

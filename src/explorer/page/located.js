@@ -3,7 +3,10 @@
 
 /** @import { Flat, Place } from './answers.js' */
 
-/** @typedef {{ corners: number[], parts: number[] }} MeshPoint A point of a mesh: the vertices of its triangle, and how much of each it is made of. */
+/**
+ * A point of a mesh: the vertices of its triangle, and how much of each it is made of.
+ * @typedef {{ corners: number[], parts: number[] }} MeshPoint
+ */
 
 /**
  * How much of each corner a place is made of; not numbers where the triangle is flat.

@@ -43,7 +43,8 @@ export async function paintMap(canvas, view, caption) {
     const mine = requests.begin();
     const cells = kind === 'weight' ? WEIGHT_CELLS : VALIDITY_CELLS;
     try {
-      const words = await getWords(kind === 'weight' ? 'grid' : 'validity', { box, columns: cells, rows: cells, provider: store.view.compare?.provider });
+      const provider = store.view.compare?.provider;
+      const words = await getWords(kind === 'weight' ? 'grid' : 'validity', { box, columns: cells, rows: cells, provider });
       if (!requests.is(mine)) return;
       known = { key, kind, words, cells };
     } catch {
@@ -73,7 +74,8 @@ function paintWeights(canvas, { words, cells }) {
   for (let j = 0; j < cells; j++) {
     for (let i = 0; i < cells; i++) {
       const weight = at(i, j);
-      const [rgb, amount] = weight < 0 ? [warn, Math.min(-weight * 1.1, 0.5)] : weight > 1 ? [wrong, Math.min(0.35 + (weight - 1), 0.7)] : [accent, weight * 0.62];
+      const [rgb, amount] = weight < 0 ? [warn, Math.min(-weight * 1.1, 0.5)]
+        : weight > 1 ? [wrong, Math.min(0.35 + (weight - 1), 0.7)] : [accent, weight * 0.62];
       image.data.set([...rgb, 255 * amount], 4 * ((cells - 1 - j) * cells + i));
     }
   }
@@ -101,7 +103,9 @@ function smooth(canvas, image) {
 
 /**
  * Where a grid of values at cell centres crosses a level: one line a cell, by linear interpolation along its sides.
- * @type {(context: CanvasRenderingContext2D, pixels: number, cells: number, at: (i: number, j: number) => number, level: number, style: string) => void}
+ * @type {(
+ *   context: CanvasRenderingContext2D, pixels: number, cells: number, at: (i: number, j: number) => number, level: number, style: string,
+ * ) => void}
  */
 function contour(context, pixels, cells, at, level, style) {
   const cell = pixels / cells;
@@ -164,10 +168,14 @@ function paintValidity(canvas, { words, cells }) {
 export function legend() {
   const element = h('div', { class: 'legend hidden', 'aria-live': 'polite' });
   /** @type {(name: string) => SVGElement} */
-  const swatch = (name) => s('svg', { class: `swatch ${name}`, viewBox: '0 0 10 10', 'aria-hidden': 'true' }, set(s('rect'), { width: 10, height: 10, rx: 2 }));
+  const swatch = (name) => s('svg', { class: `swatch ${name}`, viewBox: '0 0 10 10', 'aria-hidden': 'true' },
+    set(s('rect'), { width: 10, height: 10, rx: 2 }));
   /** @type {{ [kind: string]: () => (string | Node)[] }} */
   const said = {
-    weight: () => [h('b', {}, store.scene.poses[store.pose ?? 0]?.name ?? ''), swatch('accent'), 'weight', swatch('warn'), 'below 0', swatch('wrong'), 'above 1'],
+    weight: () => [
+      h('b', {}, store.scene.poses[store.pose ?? 0]?.name ?? ''),
+      swatch('accent'), 'weight', swatch('warn'), 'below 0', swatch('wrong'), 'above 1',
+    ],
     validity: () => [swatch('good'), 'sound', swatch('warn'), 'stretched', swatch('wrong'), 'folds'],
   };
   return {

@@ -250,7 +250,8 @@ async function close() {
 }
 
 export const tray = h('div', { class: 'floating hidden', role: 'group', 'aria-label': 'New landmark' });
-const nameField = h('input', { type: 'text', placeholder: 'Name (optional)', 'aria-label': 'Name of the new landmark', onkeydown: (event) => {
+const named = { type: 'text', placeholder: 'Name (optional)', 'aria-label': 'Name of the new landmark' };
+const nameField = h('input', { ...named, onkeydown: (event) => {
   event.stopPropagation();
   if (event.key === 'Enter') addFresh();
   if (event.key === 'Escape') escapeMatches();
@@ -258,14 +259,17 @@ const nameField = h('input', { type: 'text', placeholder: 'Name (optional)', 'ar
 const hint = h('span', { class: 'faint hint' });
 const done = h('button', { type: 'button', class: 'main', id: 'end-line', onclick: () => close() }, 'End the line');
 const add = h('button', { type: 'button', class: 'main', id: 'add-landmark', onclick: () => addFresh() });
-tray.append(h('span', {}, icon('key')), hint, nameField, h('button', { type: 'button', onclick: () => escapeMatches() }, 'Cancel'), done, add);
+tray.append(h('span', {}, icon('key')), hint, nameField,
+  h('button', { type: 'button', onclick: () => escapeMatches() }, 'Cancel'), done, add);
 
 export function drawTray() {
   const { fresh } = match;
   tray.classList.toggle('hidden', !fresh);
   if (!fresh) return;
   const open = Boolean(fresh.open);
-  hint.textContent = open ? 'Click from point to point; click twice to end the line.' : fresh.path ? 'Drag points, or the line between them; click a point twice to take it out.' : 'Drag the markers to where they belong.';
+  hint.textContent = open ? 'Click from point to point; click twice to end the line.'
+    : fresh.path ? 'Drag points, or the line between them; click a point twice to take it out.'
+      : 'Drag the markers to where they belong.';
   [nameField, add].forEach((element) => element.classList.toggle('hidden', open));
   done.classList.toggle('hidden', !open);
   done.disabled = Boolean(fresh.open) && fresh.at[fresh.open ?? ''].length < 3;
@@ -283,7 +287,8 @@ export async function addFresh() {
   const layered = store.scene.layers.length > 1 ? { layer: store.scene.layers[store.layer].name } : {};
   const name = nameField.value.trim();
   const known = new Set(store.scene.landmarks.map((landmark) => landmark.name));
-  const state = await edit([{ op: 'add_landmark', at: fresh.at, path: fresh.path, ...layered, ...(name ? { name } : {}) }], fresh.path ? 'add a line' : 'add a landmark');
+  const op = { op: 'add_landmark', at: fresh.at, path: fresh.path, ...layered, ...(name ? { name } : {}) };
+  const state = await edit([op], fresh.path ? 'add a line' : 'add a landmark');
   if (!state) return true;
   match.fresh = null;
   nameField.value = '';

@@ -65,18 +65,25 @@ export function drawCell(cell, px) {
  * @type {(at: Place, px: number) => SVGElement}
  */
 const spot = ([cx, cy], px) => s('g', {},
-  s('circle', { class: 'halo', cx, cy, r: 6 * px, 'stroke-width': 4.5 * px }), s('circle', { cx, cy, r: 6 * px, 'stroke-width': 2 * px }), s('circle', { class: 'middle', cx, cy, r: 1.5 * px }));
+  s('circle', { class: 'halo', cx, cy, r: 6 * px, 'stroke-width': 4.5 * px }), s('circle', { cx, cy, r: 6 * px, 'stroke-width': 2 * px }),
+  s('circle', { class: 'middle', cx, cy, r: 1.5 * px }));
 
 /**
  * Where the keyboard is.
  * @type {(at: Place, px: number) => SVGElement}
  */
-const cross = ([x, y], px) => s('path', { d: [[-1, 0], [1, 0], [0, -1], [0, 1]].map(([dx, dy]) => `M${x + 3 * dx * px} ${y + 3 * dy * px}L${x + 16 * dx * px} ${y + 16 * dy * px}`).join(''), 'stroke-width': 2 * px });
+const cross = ([x, y], px) => {
+  /** @type {(way: number[]) => string} */
+  const arm = ([dx, dy]) => `M${x + 3 * dx * px} ${y + 3 * dy * px}L${x + 16 * dx * px} ${y + 16 * dy * px}`;
+  return s('path', { d: [[-1, 0], [1, 0], [0, -1], [0, 1]].map(arm).join(''), 'stroke-width': 2 * px });
+};
 
 /** @type {(flat: Flat) => number} */
 function perimeter(flat) {
   let sum = 0;
-  for (let k = 0; k < flat.length; k += 2) sum += Math.hypot(flat[(k + 2) % flat.length] - flat[k], flat[(k + 3) % flat.length] - flat[k + 1]);
+  for (let k = 0; k < flat.length; k += 2) {
+    sum += Math.hypot(flat[(k + 2) % flat.length] - flat[k], flat[(k + 3) % flat.length] - flat[k + 1]);
+  }
   return sum;
 }
 
@@ -84,7 +91,8 @@ function perimeter(flat) {
 const pairs = (flat) => Array.from({ length: flat.length / 2 }, (_, k) => [flat[2 * k], flat[2 * k + 1]]);
 
 /** @type {(pose: MatchPose, px: number) => SVGElement[]} */
-const salient = (pose, px) => (pose.salient ?? []).map(({ at: [x, y] }) => s('circle', { class: 'salient', cx: x, cy: y, r: 2 * px, 'stroke-width': px }));
+const salient = (pose, px) =>
+  (pose.salient ?? []).map(({ at: [x, y] }) => s('circle', { class: 'salient', cx: x, cy: y, r: 2 * px, 'stroke-width': px }));
 
 /** @type {(at: Place | null, k: number, colour: string, px: number, roomy: boolean) => SVGElement[]} */
 function numbered(at, k, colour, px, roomy) {
@@ -124,7 +132,8 @@ function meshPath(index, px) {
 function drawMarks(cell, px) {
   const { data, chosen, pointed, held } = match;
   const problems = (store.state.problems ?? []).map((problem) => problem.landmark);
-  if (!isStale(cell.layers.marks, [data, store.scene, px, cell.view, chosen, pointed, held, JSON.stringify([match.fresh, problems])])) return;
+  const made = [data, store.scene, px, cell.view, chosen, pointed, held, JSON.stringify([match.fresh, problems])];
+  if (!isStale(cell.layers.marks, made)) return;
   const before = cell.marks ?? new Map();
   /** @type {Map<string, SVGElement>} */
   const marks = new Map();
@@ -172,7 +181,8 @@ function looksOf(cell, name, path, points, px, kind) {
 }
 
 /** @type {(base: string, looks: Looks) => string} */
-const classes = (base, looks) => [base, looks.kind, looks.marked && 'marked', looks.chosen && 'chosen', looks.wrong && 'wrong'].filter(Boolean).join(' ');
+const classes = (base, looks) =>
+  [base, looks.kind, looks.marked && 'marked', looks.chosen && 'chosen', looks.wrong && 'wrong'].filter(Boolean).join(' ');
 
 /** @type {(looks: Looks) => SVGElement | null} */
 function labelled({ points: [[x, y]], px, label, before }) {
@@ -188,7 +198,8 @@ function mark(looks) {
   const r = (marked || name === null ? 7 : 4) * px;
   const shape = s('path', { d: `M${x} ${y - r}L${x + r} ${y}L${x} ${y + r}L${x - r} ${y}Z`, 'stroke-width': 1.5 * px });
   if (hue) shape.style.setProperty(kind === 'given' ? 'fill' : 'stroke', hue);
-  return s('g', { class: classes('mark', looks), 'data-landmark': name ?? '' }, s('circle', { class: 'reach', cx: x, cy: y, r: 9 * px }), shape, s('title', {}, name ?? 'New landmark'), labelled(looks));
+  return s('g', { class: classes('mark', looks), 'data-landmark': name ?? '' }, s('circle', { class: 'reach', cx: x, cy: y, r: 9 * px }),
+    shape, s('title', {}, name ?? 'New landmark'), labelled(looks));
 }
 
 /**
@@ -198,9 +209,12 @@ function mark(looks) {
 function lineMark(looks) {
   const { name, points, px, marked } = looks;
   const along = points.map((p) => p.join(',')).join(' ');
-  const nodes = marked || name === null ? points.map(([x, y], k) => s('g', { 'data-node': k }, s('circle', { class: 'reach', cx: x, cy: y, r: 8 * px }), s('circle', { class: 'node', cx: x, cy: y, r: 4 * px, 'stroke-width': 1.5 * px }))) : [];
+  const nodes = marked || name === null ? points.map(([x, y], k) => s('g', { 'data-node': k },
+    s('circle', { class: 'reach', cx: x, cy: y, r: 8 * px }),
+    s('circle', { class: 'node', cx: x, cy: y, r: 4 * px, 'stroke-width': 1.5 * px }))) : [];
+  const dashes = looks.kind === 'carried' ? `${5 * px} ${3 * px}` : null;
   return s('g', { class: classes('line', looks), 'data-landmark': name ?? '' },
     s('polyline', { class: 'reach', points: along, 'stroke-width': 12 * px }),
-    s('polyline', { class: 'stroke', points: along, 'stroke-width': 2 * px, ...(looks.kind === 'carried' ? { 'stroke-dasharray': `${5 * px} ${3 * px}` } : {}) }),
+    s('polyline', { class: 'stroke', points: along, 'stroke-width': 2 * px, 'stroke-dasharray': dashes }),
     nodes, s('title', {}, name ?? 'New line'), labelled(looks));
 }

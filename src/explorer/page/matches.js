@@ -50,25 +50,33 @@ async function read() {
 
 let built = '';
 function build() {
-  const key = JSON.stringify([store.layer, match.data.poses.map((pose) => [pose.name, pose.drawn, pose.picture]), store.state.revisions.pictures]);
+  const poses = match.data.poses.map((pose) => [pose.name, pose.drawn, pose.picture]);
+  const key = JSON.stringify([store.layer, poses, store.state.revisions.pictures]);
   if (built === key) return;
   built = key;
   cells = match.data.poses.map((pose, index) => {
     const box = bounds(pose);
-    const drawing = s('svg', { class: 'drawing', 'aria-label': `Drawing of ${pose.name}: arrow keys move a cross, Space puts a landmark there`, preserveAspectRatio: 'xMidYMid meet' });
+    const drawing = s('svg', {
+      class: 'drawing', 'aria-label': `Drawing of ${pose.name}: arrow keys move a cross, Space puts a landmark there`,
+      preserveAspectRatio: 'xMidYMid meet',
+    });
     const names = ['picture', 'mesh', 'outline', 'links', 'marks', 'spot', 'cross'];
     const layers = /** @type {Cell['layers']} */ (Object.fromEntries(names.map((name) => [name, s('g', { class: name })])));
     drawing.append(...Object.values(layers));
     const warning = h('span', { class: 'warning' });
     const where = h('span', { class: 'faint small', role: 'status' });
-    const element = h('figure', { class: `cell${pose.drawn ? '' : ' copy'}` }, h('figcaption', {}, h('b', {}, pose.name), index === match.data.reference ? h('span', { class: 'faint small' }, 'reference') : null, pose.drawn ? null : h('span', { class: 'faint small' }, 'copy'), where, h('span', { class: 'grow' }), warning), drawing);
+    const caption = h('figcaption', {}, h('b', {}, pose.name),
+      index === match.data.reference ? h('span', { class: 'faint small' }, 'reference') : null,
+      pose.drawn ? null : h('span', { class: 'faint small' }, 'copy'), where, h('span', { class: 'grow' }), warning);
+    const element = h('figure', { class: `cell${pose.drawn ? '' : ' copy'}` }, caption, drawing);
     /** @type {Cell} */
     const cell = { pose, index, box, view: box, drawing, layers, warning, where, element, cross: null };
     // A copy has no drawing of its own: what it would show is bent otherwise.
     if (pose.picture && pose.drawn) {
       const { origin, scale, width, height } = pose.picture;
       const source = `api/drawing?layer=${store.layer}&pose=${pose.pose}&max=640&v=${store.state.revisions.pictures}`;
-      layers.picture.append(s('image', { href: source, x: origin[0], y: origin[1], width: width / scale, height: height / scale, preserveAspectRatio: 'none' }));
+      const lies = { x: origin[0], y: origin[1], width: width / scale, height: height / scale };
+      layers.picture.append(s('image', { href: source, ...lies, preserveAspectRatio: 'none' }));
     }
     set(drawing, { viewBox: box.join(' ') });
     attachCross(cell, unit, (place) => pointFrom(cell, place));

@@ -65,8 +65,11 @@ export class PlainMix {
         const second = right - last;
         const third = below - last;
         const first = 256 - right - third;
-        low = ((Math.imul(low, first) + Math.imul(b & PAIR, second) + Math.imul(c & PAIR, third) + Math.imul(d & PAIR, last) + HALF) >>> 8) & PAIR;
-        high = ((Math.imul(high, first) + Math.imul((b >>> 8) & PAIR, second) + Math.imul((c >>> 8) & PAIR, third) + Math.imul((d >>> 8) & PAIR, last) + HALF) >>> 8) & PAIR;
+        const lows = Math.imul(low, first) + Math.imul(b & PAIR, second) + Math.imul(c & PAIR, third) + Math.imul(d & PAIR, last);
+        low = ((lows + HALF) >>> 8) & PAIR;
+        const upper = Math.imul(high, first) + Math.imul((b >>> 8) & PAIR, second);
+        const lower = Math.imul((c >>> 8) & PAIR, third) + Math.imul((d >>> 8) & PAIR, last);
+        high = ((upper + lower + HALF) >>> 8) & PAIR;
       }
       if (high >= 0xff0000) {
         even[k] += Math.imul(low, weight);

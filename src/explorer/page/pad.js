@@ -232,7 +232,8 @@ function drawPoses() {
     element.classList.toggle('chosen', store.pose === index);
     element.classList.toggle('copy', pose.kind === 'deformed');
     element.classList.toggle('wrong', (store.state?.problems ?? []).some((problem) => problem.pose === pose.name));
-    element.setAttribute('aria-label', `Pose ${pose.name} at ${pose.at.map((v) => short(v)).join(', ')}. Enter goes there, arrow keys move it.`);
+    const where = pose.at.map((v) => short(v)).join(', ');
+    element.setAttribute('aria-label', `Pose ${pose.name} at ${where}. Enter goes there, arrow keys move it.`);
     if (!element.classList.contains('held')) place(element, pose.at);
   });
 }
@@ -247,8 +248,13 @@ function drawLines() {
   const made = [];
   const { low, size } = view.plane;
   const unit = niceStep(size / 6);
-  for (let k = Math.ceil(low[0] / unit); k * unit <= low[0] + size; k++) made.push(polyline([[k * unit, low[1]], [k * unit, low[1] + size]], k === 0 ? 'axis' : 'grid'));
-  for (let k = Math.ceil(low[1] / unit); k * unit <= low[1] + size; k++) made.push(polyline([[low[0], k * unit], [low[0] + size, k * unit]], k === 0 ? 'axis' : 'grid'));
+  const [[left, bottom], [right, top]] = [low, low.map((value) => value + size)];
+  for (let k = Math.ceil(left / unit); k * unit <= right; k++) {
+    made.push(polyline([[k * unit, bottom], [k * unit, top]], k === 0 ? 'axis' : 'grid'));
+  }
+  for (let k = Math.ceil(bottom / unit); k * unit <= top; k++) {
+    made.push(polyline([[left, k * unit], [right, k * unit]], k === 0 ? 'axis' : 'grid'));
+  }
   for (const wall of store.scene.pose_space?.walls ?? []) made.push(polyline(wall, 'wall'));
   if (pathPlaces.length > 1) made.push(polyline(pathPlaces, 'path'));
   const keys = store.gesture?.keys ?? store.scene.animation?.keys ?? [];
@@ -272,7 +278,10 @@ function pseudoPose(pseudo, index) {
   return /** @type {const} */ (['from', 'at']).map((name) => {
     const [x, y] = view.pixel(pseudo[name]);
     const what = name === 'at' ? `Pseudo-pose ${index + 1}: here` : `Pseudo-pose ${index + 1}: shows what was here`;
-    const dot = s('circle', { class: `pseudo ${name}`, cx: x, cy: y, r: name === 'at' ? 5 : 3.5, tabindex: '0', role: 'button', 'aria-label': `${what}. Arrow keys move it.`, 'data-pseudo': `${index} ${name}` });
+    const dot = s('circle', {
+      class: `pseudo ${name}`, cx: x, cy: y, r: name === 'at' ? 5 : 3.5, tabindex: '0', role: 'button',
+      'aria-label': `${what}. Arrow keys move it.`, 'data-pseudo': `${index} ${name}`,
+    });
     dot.append(s('title', {}, what));
     dot.addEventListener('pointerdown', (event) => dragPseudo(event, pseudo, index, name));
     dot.addEventListener('keydown', (event) => {
@@ -327,7 +336,8 @@ export function showPath(places) {
 
 // What stands above and below.
 
-const map = segments('What the plane shows', [['plain', 'Plain'], ['weight', 'Weight'], ['validity', 'Validity']], () => store.view.map, (value) => look({ map: value }));
+const map = segments('What the plane shows', [['plain', 'Plain'], ['weight', 'Weight'], ['validity', 'Validity']],
+  () => store.view.map, (value) => look({ map: value }));
 const snap = toggle('snap', 'Snap to the grid and to poses (hold Alt for none)', () => store.view.snap, (value) => look({ snap: value }));
 byId('pad-tools').append(h('h2', {}, 'Plane'), h('span', { class: 'grow' }), map, snap);
 pad.append(canvas, lines, poses, ends, probe, caption.element);
@@ -341,10 +351,13 @@ function drawFields() {
     const names = dimension <= 3 ? ['x', 'y', 'z'] : Array.from({ length: dimension }, (_, d) => `p${d + 1}`);
     /** @type {(d: number) => HTMLElement} */
     const field = (d) => {
-      const input = numberField(names[d], () => store.place[d] ?? 0, (value) => moveTo(store.place.map((v, k) => (k === d ? value : v))), { step: 0.01 });
+      const input = numberField(names[d], () => store.place[d] ?? 0,
+        (value) => moveTo(store.place.map((v, k) => (k === d ? value : v))), { step: 0.01 });
       return h('label', { class: 'field' }, h('span', {}, names[d]), input);
     };
-    const home = h('button', { type: 'button', class: 'bordered', title: 'Go to the first pose (Home)', onclick: () => goTo(store.scene.poses[0]) }, 'Home');
+    const home = h('button', {
+      type: 'button', class: 'bordered', title: 'Go to the first pose (Home)', onclick: () => goTo(store.scene.poses[0]),
+    }, 'Home');
     fields.replaceChildren(...Array.from({ length: dimension }, (_, d) => field(d)), h('span', { class: 'grow' }), home);
   }
   updateAll(fields, 'input');

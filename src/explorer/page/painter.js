@@ -8,7 +8,10 @@ import { ScannedPainter } from './scanned.js';
 /** @import { Surface } from './surface.js' */
 
 /** @typedef {{ scale: number, x: number, y: number }} Grid From drawing units to pixels: a scale and a shift. */
-/** @typedef {{ opacity?: number, tint?: number[], inLight?: boolean }} Looks How a frame is drawn: a tint is red, green, blue, and how much of it. */
+/**
+ * How a frame is drawn: a tint is red, green, blue, and how much of it.
+ * @typedef {{ opacity?: number, tint?: number[], inLight?: boolean }} Looks
+ */
 /** @typedef {Looks & { grid: Grid }} PaintedAs */
 /** @typedef {{ line: number[], wrong: number[], thickness?: number }} Wires Colours, premultiplied, and half the width of lines. */
 /**
@@ -38,13 +41,16 @@ function hasCard() {
 }
 
 /**
- * The painter of a canvas, which says in `dataset.painter` which it is: `card` or `processor`. `?painter=` in the page's address asks for one.
+ * The painter of a canvas, which says in `dataset.painter` which it is: `card` or `processor`. `?painter=` in the page's address asks for
+ * one.
  * @type {(canvas: HTMLCanvasElement) => Painter}
  */
 export function painterOf(canvas) {
   const asked = new URLSearchParams(location.search).get('painter');
   const wanted = asked ?? (hasCard() ? 'card' : 'processor');
-  const gl = wanted === 'card' ? canvas.getContext('webgl2', { alpha: true, antialias: false, depth: true, stencil: false, premultipliedAlpha: true }) : null;
+  /** @type {WebGLContextAttributes} */
+  const settings = { alpha: true, antialias: false, depth: true, stencil: false, premultipliedAlpha: true };
+  const gl = wanted === 'card' ? canvas.getContext('webgl2', settings) : null;
   canvas.dataset.painter = gl ? 'card' : 'processor';
   return gl ? new PuppetPainter(canvas, gl) : new ScannedPainter(canvas, brushOf(canvas, { willReadFrequently: true }));
 }

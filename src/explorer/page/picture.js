@@ -25,6 +25,11 @@ attachHandles(stage);
 
 const painter = painterOf(canvas);
 
+/** What is said in place of a picture. */
+const UNMAPPED = 'There is no drawing yet: the scene cannot be mapped. Drawings shows what was taken for the figure of each.';
+/** The colours of meshes, premultiplied. */
+const WIRES = { line: [0.2 * 0.8, 0.33 * 0.8, 0.85 * 0.8, 0.8], wrong: [0.82, 0.18, 0.15, 1] };
+
 /** @type {Frame[]} */
 let under = [];
 /** @type {Puppet | null} */
@@ -57,7 +62,7 @@ function draw() {
   const background = store.scene?.animation?.background;
   paper.style.background = background && background !== 'transparent' ? background : '';
   paper.classList.toggle('hidden', !store.frame?.layers.length);
-  note.textContent = store.scene && !(store.state.revisions.shape > 0) ? 'There is no drawing yet: the scene cannot be mapped. Drawings shows what was taken for the figure of each.' : '';
+  note.textContent = store.scene && !(store.state.revisions.shape > 0) ? UNMAPPED : '';
   // While new meshes are on their way the last picture stays.
   if (store.frame?.layers.length && (loaded !== store.puppet || store.frame.shape !== loaded?.shape)) return;
   if (!store.frame?.layers.length) {
@@ -73,13 +78,16 @@ function draw() {
   const shown = handled() ?? store.frame;
   if (shown.layers.length === painter.layers.length) {
     paint(shown, looks);
-    if (store.view.mesh) painter.wires(shown, store.meshes, { line: [0.2 * 0.8, 0.33 * 0.8, 0.85 * 0.8, 0.8], wrong: [0.82, 0.18, 0.15, 1], thickness: 0.35 * ratio });
+    if (store.view.mesh) painter.wires(shown, store.meshes, { ...WIRES, thickness: 0.35 * ratio });
   }
   drawHandles();
   const inverted = shown.inverted;
   badge.classList.toggle('hidden', !(inverted > 0));
   badge.textContent = `${inverted} inverted ${inverted === 1 ? 'triangle' : 'triangles'}`;
-  canvas.setAttribute('aria-label', `The drawing at ${store.place.map((v) => short(v)).join(', ')}${inverted > 0 ? `, ${inverted} triangles inverted` : ''}: arrow keys move a cross, whose place is told for all drawings`);
+  const at = store.place.map((v) => short(v)).join(', ');
+  const folds = inverted > 0 ? `, ${inverted} triangles inverted` : '';
+  const label = `The drawing at ${at}${folds}: arrow keys move a cross, whose place is told for all drawings`;
+  canvas.setAttribute('aria-label', label);
   tellWhat();
   emit('drawn');
 }
@@ -130,7 +138,8 @@ async function drawThumbnails() {
     const view = { scale, x: 2 - low[0] * scale, y: 2 - low[1] * scale };
     painter.begin(view);
     paint(frame, { inLight: store.scene.texture?.blending === 'linear', grid: frameGrid() });
-    emit('thumbnail', { pose, canvas, view, frame, box: [0, 0, Math.ceil((high[0] - low[0]) * scale) + 4, Math.ceil((high[1] - low[1]) * scale) + 4] });
+    const box = [0, 0, Math.ceil((high[0] - low[0]) * scale) + 4, Math.ceil((high[1] - low[1]) * scale) + 4];
+    emit('thumbnail', { pose, canvas, view, frame, box });
   });
   draw();
 }
@@ -223,7 +232,9 @@ async function drawUnder() {
   } else {
     const path = store.path ?? [];
     const wanted = 7;
-    under = await framesOf('at', Array.from({ length: Math.min(wanted, path.length) }, (_, k) => path[Math.round((k / wanted) * (path.length - 1))]));
+    const count = Math.min(wanted, path.length);
+    const places = Array.from({ length: count }, (_, k) => path[Math.round((k / wanted) * (path.length - 1))]);
+    under = await framesOf('at', places);
   }
   redraw();
 }
@@ -233,8 +244,10 @@ async function drawUnder() {
 canvas.addEventListener('wheel', (event) => {
   event.preventDefault();
   const box = stage.getBoundingClientRect();
-  if (event.ctrlKey || event.metaKey || !event.shiftKey) zoomBy(Math.exp(-event.deltaY * (event.ctrlKey ? 0.01 : 0.0016)), [event.clientX - box.left, event.clientY - box.top]);
-  else panBy(-event.deltaX, -event.deltaY);
+  if (event.ctrlKey || event.metaKey || !event.shiftKey) {
+    const factor = Math.exp(-event.deltaY * (event.ctrlKey ? 0.01 : 0.0016));
+    zoomBy(factor, [event.clientX - box.left, event.clientY - box.top]);
+  } else panBy(-event.deltaX, -event.deltaY);
 }, { passive: false });
 canvas.addEventListener('pointerdown', (event) => {
   if (event.button === 1 || store.view.tool === 'pan') {

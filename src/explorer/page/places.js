@@ -8,7 +8,12 @@ import { drawingView, toDrawing } from './view.js';
 /** @import { Frame, Place } from './answers.js' */
 /** @import { Thumbnail } from './state.js' */
 
-/** @typedef {{ canvas: HTMLCanvasElement, mark: HTMLElement, sheet: HTMLElement, element: HTMLElement, frame?: Frame, place?: (at: Place) => Place }} Card Without a frame until the pose was drawn. */
+/**
+ * A pose on the strip; without a frame until it was drawn.
+ * @typedef {{
+ *   canvas: HTMLCanvasElement, mark: HTMLElement, sheet: HTMLElement, element: HTMLElement, frame?: Frame, place?: (at: Place) => Place,
+ * }} Card
+ */
 
 /** CSS pixels of a card's drawing at most. */
 const [WIDTH, HEIGHT] = [132, 84];

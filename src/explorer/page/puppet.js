@@ -62,8 +62,8 @@ export class PuppetPainter {
   }
 
   /**
-   * Takes `api/puppet`, a `Surface` a layer and, per layer and texture, a bitmap, of nearest texels also a mask; without bitmaps the pictures
-   * that are there stay.
+   * Takes `api/puppet`, a `Surface` a layer and, per layer and texture, a bitmap, of nearest texels also a mask; without bitmaps the
+   * pictures that are there stay.
    * @type {(puppet: Puppet, surfaces: Surface[], bitmaps: ImageBitmap[][] | null, masks?: ImageBitmap[][] | null) => void}
    */
   load(puppet, surfaces, bitmaps, masks) {
@@ -194,7 +194,9 @@ export class PuppetPainter {
     }
     bound(gl, 0, this.areas.texture);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, window[0], window[1], window[2] - window[0], window[3] - window[1], gl.RED, gl.UNSIGNED_BYTE, coveredAreas(rings, this.view, window));
+    const areas = coveredAreas(rings, this.view, window);
+    const [left, top, right, bottom] = window;
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, left, top, right - left, bottom - top, gl.RED, gl.UNSIGNED_BYTE, areas);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
   }
 

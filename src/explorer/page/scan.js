@@ -5,7 +5,11 @@
 /** @import { Skirt } from './skirt.js' */
 /** @import { Padded } from './texels.js' */
 
-/** @typedef {{ skirt: Skirt, places: Float32Array, areas: Uint8Array, textures: PlacedTexture[], mix: PlainMix | LightMix, seen: Seen }} Painted */
+/**
+ * @typedef {{
+ *   skirt: Skirt, places: Float32Array, areas: Uint8Array, textures: PlacedTexture[], mix: PlainMix | LightMix, seen: Seen,
+ * }} Painted
+ */
 /** @typedef {{ weight: number, texels: Padded, at: Float32Array }} PlacedTexture */
 
 /** Numbers that a texture has in a triangle: u, v at its first corner, and what they change by in x and in y. */

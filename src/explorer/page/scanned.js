@@ -17,7 +17,12 @@ import { Texels } from './texels.js';
 /** @import { ShownTexture } from './shown.js' */
 /** @import { Surface } from './surface.js' */
 
-/** @typedef {{ skirt: Skirt, triangles: Uint32Array, edges: Edges | null, texels: number[], pictures: Texels[], places: Float32Array[], scaled: Record<string, Float32Array> }} Layer */
+/**
+ * @typedef {{
+ *   skirt: Skirt, triangles: Uint32Array, edges: Edges | null, texels: number[], pictures: Texels[], places: Float32Array[],
+ *   scaled: Record<string, Float32Array>,
+ * }} Layer
+ */
 /** @typedef {{ of: Uint32Array, ends: Uint32Array }} Edges The edges of triangles. */
 
 /** Textures that are drawn at once; of more, the heaviest. */

@@ -23,9 +23,15 @@ import { OneAtATime } from './newest.js';
  *   mark: 'point' | 'line', mesh: boolean, places: boolean, snap: boolean, compare: Comparison | null,
  * }} View
  */
-/** @typedef {{ samples: number[][] } & Partial<GestureKeys>} Gesture A recorded path: time and place of each sample; its keys once they are found. */
+/**
+ * A recorded path: time and place of each sample; its keys once they are found.
+ * @typedef {{ samples: number[][] } & Partial<GestureKeys>} Gesture
+ */
 /** @typedef {Frame & { place: Place }} ShownFrame */
-/** @typedef {{ pose: number, canvas: HTMLCanvasElement, view: Grid, frame: Frame, box: number[] }} Thumbnail A pose as it was just drawn. */
+/**
+ * A pose as it was just drawn.
+ * @typedef {{ pose: number, canvas: HTMLCanvasElement, view: Grid, frame: Frame, box: number[] }} Thumbnail
+ */
 /**
  * What the page knows. Of `state`, `scene`, `puppet` and `frame` nothing is there before the first answer; what an event calls can rely on
  * what it tells of, and only what may run before that asks.

@@ -1,5 +1,6 @@
 // @ts-check
-// What the pictures of a layer are painted on: its mesh, or a finer one on which they are registered to one another, which the mesh carries.
+// What the pictures of a layer are painted on: its mesh, or a finer one on which they are registered to one another, which the mesh
+// carries.
 import { ringArea } from './geometry.js';
 
 /** @import { FineMesh, Mesh, Shape } from './answers.js' */

@@ -11,7 +11,10 @@ import { showPath } from './pad.js';
 
 /** @import { Path, Place } from './answers.js' */
 
-/** @typedef {{ smoothing: number, tolerance: number, duration: number | null, loop: boolean }} Settings What `api/gesture` is asked with. */
+/**
+ * What `api/gesture` is asked with.
+ * @typedef {{ smoothing: number, tolerance: number, duration: number | null, loop: boolean }} Settings
+ */
 
 const root = byId('timeline');
 
@@ -94,7 +97,9 @@ export function stepFrame(by) {
 // Parts.
 
 const playButton = iconButton('play', 'Play', () => play(), { id: 'play', title: 'Play or pause (Space)' });
-const recordButton = iconButton('record', 'Record a gesture', () => arm(!isArmed()), { id: 'record', class: 'square record', title: 'Record: then drag through the plane (R)' });
+const recordButton = iconButton('record', 'Record a gesture', () => arm(!isArmed()), {
+  id: 'record', class: 'square record', title: 'Record: then drag through the plane (R)',
+});
 const loopButton = toggle('loop', 'Loop', () => loops, (value) => {
   loops = value;
   if (store.gesture) resolve({ loop: value });
@@ -128,7 +133,8 @@ track.addEventListener('keydown', (event) => {
 });
 const hint = h('span', { class: 'hint faint' });
 const tools = h('div', { class: 'gesture hidden' });
-root.append(h('div', { class: 'transport' }, recordButton, playButton, loopButton, clock, track), h('div', { class: 'under' }, hint, tools));
+root.append(h('div', { class: 'transport' }, recordButton, playButton, loopButton, clock, track),
+  h('div', { class: 'under' }, hint, tools));
 
 function drawHead() {
   const part = duration() > 0 ? time / duration() : 0;
@@ -225,7 +231,9 @@ function drawGesture() {
   recordButton.setAttribute('aria-pressed', String(isArmed() || recording()));
   hint.textContent = recording() ? 'Recording… let go to end the gesture.'
     : isArmed() ? 'Press in the plane and drag: the gesture is recorded as you make it.'
-      : store.scene?.animation?.own_keys ? `${store.scene.animation.keys.length} keys. Drag one to move it in time; record to replace them.` : 'The path visits every pose. Record a gesture, or add keys.';
+      : store.scene?.animation?.own_keys
+        ? `${store.scene.animation.keys.length} keys. Drag one to move it in time; record to replace them.`
+        : 'The path visits every pose. Record a gesture, or add keys.';
   if (!store.gesture) {
     built = false;
     return;
@@ -233,9 +241,12 @@ function drawGesture() {
   if (!built) {
     built = true;
     tools.replaceChildren(
-      slider('Smooth', { min: 0, max: 0.5, step: 0.01 }, () => settings.smoothing, (v) => resolve({ smoothing: v }), (v) => resolve({ smoothing: v })),
-      slider('Simplify', { min: 0.001, max: 0.05, step: 0.001, digits: 3 }, () => settings.tolerance, (v) => resolve({ tolerance: v }), (v) => resolve({ tolerance: v })),
-      h('label', { class: 'field' }, h('span', {}, 'Seconds'), numberField('Duration in seconds', () => rounded(duration(), 2), (v) => v > 0 && resolve({ duration: v }), { step: 0.1, digits: 2, id: 'gesture-seconds' })),
+      slider('Smooth', { min: 0, max: 0.5, step: 0.01 },
+        () => settings.smoothing, (v) => resolve({ smoothing: v }), (v) => resolve({ smoothing: v })),
+      slider('Simplify', { min: 0.001, max: 0.05, step: 0.001, digits: 3 },
+        () => settings.tolerance, (v) => resolve({ tolerance: v }), (v) => resolve({ tolerance: v })),
+      h('label', { class: 'field' }, h('span', {}, 'Seconds'), numberField('Duration in seconds', () => rounded(duration(), 2),
+        (v) => v > 0 && resolve({ duration: v }), { step: 0.1, digits: 2, id: 'gesture-seconds' })),
       h('span', { class: 'keys faint' }), h('span', { class: 'grow' }),
       h('button', { type: 'button', onclick: discard }, 'Discard'),
       h('button', { type: 'button', class: 'main', id: 'save-gesture', onclick: keep }, 'Save to scene'));
@@ -255,7 +266,8 @@ function discard() {
 async function keep() {
   const keys = store.gesture?.keys;
   if (!keys) return;
-  const state = await edit([{ op: 'set_keys', keys: keys.map((key) => ({ time: rounded(key.time, 3), at: key.at.map((v) => rounded(v)) })), loop: loops }], 'record a gesture');
+  const written = keys.map((key) => ({ time: rounded(key.time, 3), at: key.at.map((v) => rounded(v)) }));
+  const state = await edit([{ op: 'set_keys', keys: written, loop: loops }], 'record a gesture');
   if (state) discard();
 }
 

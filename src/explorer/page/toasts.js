@@ -14,7 +14,9 @@ const SECONDS = 7;
 export function toast(message, { kind = 'note', detail = null } = {}) {
   const same = Array.from(root.children).find((other) => /** @type {HTMLElement} */ (other).dataset.message === message);
   same?.remove();
-  const element = h('div', { class: `toast ${kind}`, 'data-message': message }, kind === 'problem' ? icon('warn') : null, h('div', { class: 'grow' }, h('p', {}, message), detail && h('p', { class: 'faint small' }, detail)), iconButton('close', 'Close this message', () => element.remove()));
+  const text = h('div', { class: 'grow' }, h('p', {}, message), detail && h('p', { class: 'faint small' }, detail));
+  const element = h('div', { class: `toast ${kind}`, 'data-message': message }, kind === 'problem' ? icon('warn') : null, text,
+    iconButton('close', 'Close this message', () => element.remove()));
   root.append(element);
   while (root.children.length > 3) root.firstChild?.remove();
   setTimeout(() => element.remove(), SECONDS * 1000);
@@ -22,7 +24,9 @@ export function toast(message, { kind = 'note', detail = null } = {}) {
 
 /** @type {(problem: Problem) => void} */
 function refused(problem) {
-  const where = [problem.landmark && `landmark ${problem.landmark}`, problem.pose && `pose ${problem.pose}`, problem.line && `line ${problem.line}`].filter(Boolean).join(', ');
+  const parts = [problem.landmark && `landmark ${problem.landmark}`, problem.pose && `pose ${problem.pose}`,
+    problem.line && `line ${problem.line}`];
+  const where = parts.filter(Boolean).join(', ');
   toast(problem.message, { kind: 'problem', detail: where || null });
 }
 tellRefusals(refused);

@@ -27,7 +27,8 @@ function build() {
     return { button, bar, seen, number, name: pose.name };
   });
   list.replaceChildren(
-    h('div', { class: 'caption' }, h('h2', {}, 'Weights'), h('span', { class: 'faint small' }, 'bar: shape', h('span', { class: 'tick' }), 'texture')),
+    h('div', { class: 'caption' }, h('h2', {}, 'Weights'),
+      h('span', { class: 'faint small' }, 'bar: shape', h('span', { class: 'tick' }), 'texture')),
     ...rows.map((row) => row.button));
 }
 
