@@ -258,7 +258,7 @@ impl<'a> PictureSampler<'a> {
             (1, 1, u * v),
         ] {
             // What is negative becomes larger than any picture.
-            let (x, y) = ((column + i) as usize, (row + j) as usize);
+            let (x, y) = (column.saturating_add(i) as usize, row.saturating_add(j) as usize);
             if x < self.picture.width && y < self.picture.height {
                 let pixel = self.picture.pixels[y * self.picture.width + x];
                 for (value, channel) in value.iter_mut().zip(pixel) {

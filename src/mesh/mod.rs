@@ -13,7 +13,7 @@ pub mod validity;
 pub(crate) use flattening::first_flat;
 pub use locate::{Located, PointLocator};
 pub use mesh_point::MeshPoint;
-pub(crate) use smooth_points::SmoothPoints;
+pub(crate) use smooth_points::{SmoothCarrier, SmoothPoints};
 pub use subdivision::subdivided;
 pub(crate) use topology::directed_edges;
 pub(crate) use topology::undirected;

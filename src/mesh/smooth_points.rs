@@ -14,8 +14,8 @@
 //!
 //! Where too few vertices are near, or all lie along a line, the place stays with its triangle.
 
-use super::{MeshPoint, Topology};
-use crate::math::{Matrix, Point, point};
+use super::{MeshPoint, Topology, geometry};
+use crate::math::{Matrix, Point};
 
 /// The radius, in mean lengths of the edges at the place: the least within which there are two vertices in every direction.
 const RADIUS: f64 = 2.0;
@@ -29,7 +29,7 @@ const BENT: f64 = 0.3;
 const LEAST_SPREAD: f64 = 1e-4;
 
 /// Places with their shares of a mesh's vertices.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(crate) struct SmoothPoints {
     /// Where the shares of each place begin, and where the last end.
     starts: Vec<usize>,
@@ -38,26 +38,6 @@ pub(crate) struct SmoothPoints {
 }
 
 impl SmoothPoints {
-    /// The places of `anchors` on pose `own` of the mesh `topology`, whose vertices lie at `poses`.
-    pub(crate) fn new(topology: &Topology, poses: &[Vec<Point>], own: usize, anchors: &[MeshPoint]) -> Self {
-        let around = Around::new(topology, poses, own);
-        let mut points = Self {
-            starts: vec![0],
-            ..Self::default()
-        };
-        let mut near = Vec::new();
-        for anchor in anchors {
-            if !around.shares(anchor, &mut near) {
-                near.clear();
-                near.extend(anchor.vertices.iter().copied().zip(anchor.shares));
-            }
-            points.vertices.extend(near.iter().map(|(vertex, _)| *vertex as u32));
-            points.shares.extend(near.iter().map(|(_, share)| *share));
-            points.starts.push(points.vertices.len());
-        }
-        points
-    }
-
     /// How many places there are.
     pub(crate) fn len(&self) -> usize {
         self.starts.len().saturating_sub(1)
@@ -73,8 +53,8 @@ impl SmoothPoints {
     }
 }
 
-/// A mesh and who is next to whom.
-struct Around<'a> {
+/// A mesh on one of its poses, where places are fixed to it.
+pub(crate) struct SmoothCarrier<'a> {
     positions: &'a [Point],
     neighbours: Vec<Vec<usize>>,
     /// By vertex, the mean length of its edges.
@@ -91,44 +71,71 @@ struct Other<'a> {
     scale: f64,
 }
 
-impl<'a> Around<'a> {
-    fn new(topology: &Topology, poses: &'a [Vec<Point>], own: usize) -> Self {
+/// A place of the pose, and how what is around it goes to another.
+struct Expected<'a> {
+    positions: &'a [Point],
+    map: Matrix,
+    place: Point,
+    radius: f64,
+}
+
+impl<'a> SmoothCarrier<'a> {
+    /// The mesh `topology` on pose `own` of those whose vertices lie at `poses`.
+    pub(crate) fn new(topology: &Topology, poses: &'a [Vec<Point>], own: usize) -> Self {
         let positions = poses[own].as_slice();
-        let mut neighbours = vec![Vec::new(); positions.len()];
-        for (a, b) in topology.edges() {
-            neighbours[a].push(b);
-            neighbours[b].push(a);
-        }
+        let neighbours = topology.vertex_neighbours();
         let mean = |(v, near): (usize, &Vec<usize>)| {
             let sum: f64 = near.iter().map(|&w| (positions[w] - positions[v]).norm()).sum();
             sum / near.len().max(1) as f64
         };
+        let own_area = area(topology, positions);
+        let other = |(_, theirs): (usize, &'a Vec<Point>)| Other {
+            positions: theirs,
+            maps: (neighbours.iter().enumerate())
+                .map(|(v, near)| map_around(v, near, positions, theirs))
+                .collect(),
+            scale: (area(topology, theirs) / own_area).sqrt(),
+        };
+        let others = poses.iter().enumerate().filter(|(pose, _)| *pose != own);
         Self {
             positions,
             lengths: neighbours.iter().enumerate().map(mean).collect(),
-            others: (poses.iter().enumerate())
-                .filter(|(pose, _)| *pose != own)
-                .map(|(_, theirs)| Other {
-                    positions: theirs,
-                    maps: (0..positions.len())
-                        .map(|v| map_around(v, &neighbours[v], positions, theirs))
-                        .collect(),
-                    scale: (area(topology, theirs) / area(topology, positions)).sqrt(),
-                })
-                .collect(),
+            others: others.map(other).collect(),
             neighbours,
         }
     }
 
-    /// How far `v` is from where the map around a place has it, the most over the other poses, in radii.
-    fn bent(&self, anchor: &MeshPoint, place: Point, radius: f64, v: usize) -> f64 {
-        let of_pose = |other: &Other| {
-            let maps = anchor.vertices.iter().zip(anchor.shares);
-            let map: Matrix = maps.map(|(&vertex, share)| other.maps[vertex] * share).sum();
-            let expected = anchor.at(other.positions) + map * (self.positions[v] - place);
-            (other.positions[v] - expected).norm() / (radius * other.scale)
+    /// The places of `anchors` with their shares.
+    pub(crate) fn points(&self, anchors: &[MeshPoint]) -> SmoothPoints {
+        let mut points = SmoothPoints {
+            starts: vec![0],
+            vertices: Vec::new(),
+            shares: Vec::new(),
         };
-        self.others.iter().map(of_pose).fold(0.0, f64::max)
+        let mut near = Vec::new();
+        for anchor in anchors {
+            if !self.shares(anchor, &mut near) {
+                near.clear();
+                near.extend(anchor.vertices.iter().copied().zip(anchor.shares));
+            }
+            points.vertices.extend(near.iter().map(|(vertex, _)| *vertex as u32));
+            points.shares.extend(near.iter().map(|(_, share)| *share));
+            points.starts.push(points.vertices.len());
+        }
+        points
+    }
+
+    /// What is expected of the vertices around a place in every other pose.
+    fn expected(&self, anchor: &MeshPoint, radius: f64) -> Vec<Expected<'a>> {
+        let of_pose = |other: &Other<'a>| Expected {
+            positions: other.positions,
+            map: (anchor.vertices.iter().zip(anchor.shares))
+                .map(|(&vertex, share)| other.maps[vertex] * share)
+                .sum(),
+            place: anchor.at(other.positions),
+            radius: radius * other.scale,
+        };
+        self.others.iter().map(of_pose).collect()
     }
 
     /// Puts the vertices around a place and their shares into `near`; `false` where they do not say how it moves.
@@ -140,6 +147,14 @@ impl<'a> Around<'a> {
             return false;
         }
         let aside = |v: usize| (self.positions[v] - place) / radius;
+        let expected = self.expected(anchor, radius);
+        // How far a vertex is from where the map around the place has it, the most over the other poses, in radii.
+        let bent = |v: usize| {
+            let from_place = self.positions[v] - place;
+            let off =
+                |there: &Expected| (there.positions[v] - (there.place + there.map * from_place)).norm() / there.radius;
+            expected.iter().map(off).fold(0.0, f64::max)
+        };
         near.clear();
         near.extend(anchor.vertices.iter().map(|&v| (v, 0.0)));
         let mut next = 0;
@@ -155,11 +170,7 @@ impl<'a> Around<'a> {
         for (v, weight) in near.iter_mut() {
             let aside = aside(*v);
             let rest = (1.0 - aside.norm_squared()).max(0.0);
-            let bent = if rest > 0.0 {
-                self.bent(anchor, place, radius, *v) / BENT
-            } else {
-                0.0
-            };
+            let bent = if rest > 0.0 { bent(*v) / BENT } else { 0.0 };
             *weight = rest * rest * libm::exp(-bent * bent);
             let basis = nalgebra::Vector3::new(1.0, aside.x, aside.y);
             moments += basis * basis.transpose() * *weight;
@@ -193,8 +204,8 @@ fn map_around(v: usize, neighbours: &[usize], from: &[Point], to: &[Point]) -> M
 }
 
 fn area(topology: &Topology, positions: &[Point]) -> f64 {
-    let doubled = |&[a, b, c]: &[usize; 3]| point::cross(positions[b] - positions[a], positions[c] - positions[a]);
-    topology.triangles().iter().map(doubled).sum::<f64>().abs()
+    let of_triangle = |&triangle: &[usize; 3]| geometry::signed_area(geometry::corners(positions, triangle));
+    topology.triangles().iter().map(of_triangle).sum::<f64>().abs()
 }
 
 #[cfg(test)]
@@ -216,7 +227,7 @@ mod tests {
         let locator = PointLocator::new(topology.triangles(), positions);
         let places = (0..=80).map(|k| Point::new(0.1 * f64::from(k), y));
         let anchors = locator.bind_along(places).expect("in the mesh");
-        let smooth = SmoothPoints::new(topology, &[positions.to_vec()], 0, &anchors);
+        let smooth = SmoothCarrier::new(topology, &[positions.to_vec()], 0).points(&anchors);
         (anchors, smooth)
     }
 
@@ -269,8 +280,8 @@ mod tests {
         let locator = PointLocator::new(topology.triangles(), &positions);
         let places = (0..=80).map(|k| Point::new(0.1 * f64::from(k), 0.3));
         let anchors = locator.bind_along(places).expect("in the mesh");
-        let unaware = SmoothPoints::new(&topology, std::slice::from_ref(&positions), 0, &anchors);
-        let aware = SmoothPoints::new(&topology, &[positions, folded.clone()], 0, &anchors);
+        let unaware = SmoothCarrier::new(&topology, std::slice::from_ref(&positions), 0).points(&anchors);
+        let aware = SmoothCarrier::new(&topology, &[positions, folded.clone()], 0).points(&anchors);
         let away = |smooth: &SmoothPoints| {
             let distances = anchors.iter().enumerate();
             let distances = distances.map(|(k, anchor)| (smooth.at(k, &folded) - anchor.at(&folded)).norm());
@@ -311,7 +322,7 @@ mod tests {
             vertices: [0, 1, 2],
             shares: [0.2, 0.3, 0.5],
         };
-        let smooth = SmoothPoints::new(&single, &[corner.to_vec()], 0, &[anchor]);
+        let smooth = SmoothCarrier::new(&single, &[corner.to_vec()], 0).points(&[anchor]);
         let moved = corner.map(|p| p * 3.0);
         assert!((smooth.at(0, &moved) - anchor.at(&moved)).norm() < 1e-12);
     }

@@ -162,6 +162,16 @@ impl Topology {
         edges
     }
 
+    /// By vertex, the vertices at the other ends of its edges, sorted.
+    pub(crate) fn vertex_neighbours(&self) -> Vec<Vec<usize>> {
+        let mut neighbours = vec![Vec::new(); self.vertex_count];
+        for (a, b) in self.edges() {
+            neighbours[a].push(b);
+            neighbours[b].push(a);
+        }
+        neighbours
+    }
+
     /// The pairs `(t, u)` with `t < u` of triangles that share an edge, sorted.
     #[must_use]
     pub fn adjacent_triangles(&self) -> Vec<(usize, usize)> {

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 use crate::matching::Correspondence;
 use crate::math::{Point, point, wrapped};
-use crate::mesh::{MeshPoint, PointLocator, SmoothPoints};
+use crate::mesh::{MeshPoint, PointLocator, SmoothCarrier, SmoothPoints};
 use crate::outline::{ArcLength, Ring};
 use crate::pose::Mapping;
 
@@ -35,7 +35,7 @@ pub struct Silhouette {
 struct CarriedRing {
     /// #rows anchors a pose.
     anchors: Vec<Vec<MeshPoint>>,
-    /// The same, carried smoothly.
+    /// These places, carried smoothly.
     smooth: Vec<SmoothPoints>,
 }
 
@@ -55,6 +55,10 @@ impl Silhouette {
         let locators: Vec<PointLocator> = positions
             .map(|positions| PointLocator::new(triangles, positions))
             .collect();
+        let carriers: Vec<SmoothCarrier> = (0..mapping.poses.len())
+            .into_par_iter()
+            .map(|own| SmoothCarrier::new(topology, mapping.poses.positions(), own))
+            .collect();
         let ring_count = mapping.outlines.iter().map(|o| o.rings().len()).min().unwrap_or(0);
         let mut rings = Vec::new();
         for ring in 0..ring_count {
@@ -73,14 +77,11 @@ impl Silhouette {
                     locator.bind_along(rows.iter().map(|&row| curve.at(correspondence.parameter(pose, row))))
                 })
                 .collect();
-            let carried = |anchors: Vec<Vec<MeshPoint>>| {
-                let of_poses = anchors.par_iter().enumerate();
-                CarriedRing {
-                    smooth: of_poses
-                        .map(|(own, anchors)| SmoothPoints::new(topology, mapping.poses.positions(), own, anchors))
-                        .collect(),
-                    anchors,
-                }
+            let carried = |anchors: Vec<Vec<MeshPoint>>| CarriedRing {
+                smooth: (carriers.par_iter().zip(&anchors))
+                    .map(|(carrier, anchors)| carrier.points(anchors))
+                    .collect(),
+                anchors,
             };
             // None: a mesh without triangles has no silhouette.
             rings.extend(anchors.map(carried));

@@ -35,15 +35,10 @@ pub(super) struct Grid {
 
 impl Surface {
     pub(super) fn new(topology: &Topology, vertices: &[Point]) -> Self {
-        let mut neighbours = vec![Vec::new(); vertices.len()];
-        for (a, b) in topology.edges() {
-            neighbours[a].push(b);
-            neighbours[b].push(a);
-        }
         Self {
             triangles: topology.triangles().to_vec(),
             vertices: vertices.to_vec(),
-            neighbours,
+            neighbours: topology.vertex_neighbours(),
         }
     }
 }

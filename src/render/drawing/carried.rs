@@ -67,15 +67,15 @@ enum Composition {
     /// Side by side; #drawings orders of the nodes, by the drawing that decides.
     Merged(Vec<Vec<usize>>),
     /// A group a drawing.
-    Faded(Vec<Layer>, Silhouette),
+    Faded(Vec<FadedDrawing>, Silhouette),
 }
 
 /// A drawing that is cross-faded with others.
 #[derive(Debug, Clone)]
-struct Layer {
+struct FadedDrawing {
     id: String,
     nodes: Vec<usize>,
-    /// Those of them that lie on its outline.
+    /// Which of them, by their place in the list, lie on its outline.
     edges: Vec<(usize, Edge)>,
     /// How far it may fall short of the silhouette.
     shortfall_px: f64,
@@ -149,22 +149,22 @@ impl CarriedDrawing {
             .filter(|&drawing| !members(drawing).is_empty())
             .count();
         let composition = if filled > 1 && !is_shared {
-            let layer = |drawing: usize| {
+            let faded = |drawing: usize| {
                 let (pose, members) = (drawn_on[drawing], members(drawing));
                 let outline = DrawnOutline::new(&mapping.outlines[pose], silhouette.ring_count(), &camera);
                 let alone: Vec<f64> = (0..drawing_count).map(|d| f64::from(u8::from(d == drawing))).collect();
-                let on_outline = |&k: &usize| {
+                let on_outline = |(place, &k): (usize, &usize)| {
                     let drawn = nodes[k].at(&poses[pose], &alone, 1.0, &camera, ColourBlend::Plain);
-                    Some((k, outline.edge(&drawn)?))
+                    Some((place, outline.edge(&drawn)?))
                 };
-                Layer {
+                FadedDrawing {
                     id: format!("drawing {}", names[drawing]),
-                    edges: members.iter().filter_map(on_outline).collect(),
+                    edges: members.iter().enumerate().filter_map(on_outline).collect(),
                     shortfall_px: silhouette.shortfall(pose, poses) * camera.scale(),
                     nodes: members,
                 }
             };
-            Composition::Faded((0..drawing_count).map(layer).collect(), silhouette)
+            Composition::Faded((0..drawing_count).map(faded).collect(), silhouette)
         } else {
             Composition::Merged(
                 (0..drawing_count)
@@ -217,23 +217,24 @@ impl CarriedDrawing {
                     .map(|&k| shown(draw(k, self.nodes[k].share(&seen))))
                     .collect()
             }
-            Composition::Faded(layers, silhouette) => {
+            Composition::Faded(drawings, silhouette) => {
                 let rings: Vec<Vec<Point>> = silhouette
                     .at(positions, weights)
                     .into_iter()
                     .map(|ring| ring.into_iter().map(|p| self.camera.to_pixels(p)).collect())
                     .collect();
                 let mut so_far = 0.0;
-                let drawn = (layers.iter().zip(&seen)).map(|(layer, seen)| {
+                let drawn = (drawings.iter().zip(&seen)).map(|(drawing, seen)| {
                     so_far += seen.max(0.0);
-                    let edges = layer.edges.iter();
-                    let edges = edges.filter_map(|(k, edge)| widened(&draw(*k, 1.0), edge, layer.shortfall_px));
-                    let nodes = layer.nodes.iter().map(|&k| draw(k, 1.0));
+                    let nodes: Vec<VectorShape> = drawing.nodes.iter().map(|&k| draw(k, 1.0)).collect();
+                    let edges = drawing.edges.iter();
+                    let edges = edges.filter_map(|(place, edge)| widened(&nodes[*place], edge, drawing.shortfall_px));
+                    let edges: Vec<VectorShape> = edges.collect();
                     VectorNode::Group(VectorGroup {
-                        id: layer.id.clone(),
+                        id: drawing.id.clone(),
                         opacity: if so_far > 0.0 { seen.max(0.0) / so_far } else { 0.0 },
                         clip: None,
-                        nodes: edges.chain(nodes).map(shown).collect(),
+                        nodes: edges.into_iter().chain(nodes).map(shown).collect(),
                     })
                 });
                 vec![VectorNode::Group(VectorGroup {
