@@ -75,6 +75,7 @@ fn mapping() -> Mapping {
             reference: 0,
             outer: Correspondence::identity(TEXELS.len(), 400),
         },
+        overlaps: inbetween::pose::Overlaps::default(),
     }
 }
 

@@ -32,6 +32,7 @@ mod layout;
 mod mapping;
 mod named;
 mod note;
+mod overlapping;
 mod parts;
 mod reach;
 mod report;
@@ -57,8 +58,8 @@ pub use reach::{Reach, ReachOptions, ShapePoint, reach, reach_landmarks, reach_n
 pub use report::{MappingReport, Stage};
 pub use spec::{
     ArtChoice, Attachment, CameraRule, CharacterSpec, DeformedCopy, DrawnPose, Facing, HandleMove, LandmarkSpec,
-    LayerRole, LayerSpec, MeshOptions, PathSpec, Places, PoseShape, PoseSpec, Register, ShrunkCopy, SpaceSpec,
-    SpecError, SvgSource, TextureSpec, UnsharedHoles, WeightOptions,
+    LayerRole, LayerSpec, MeshOptions, OverlapSearch, PathSpec, Places, PoseShape, PoseSpec, Register, ShrunkCopy,
+    SpaceSpec, SpecError, SvgSource, TextureSpec, UnsharedHoles, WeightOptions,
 };
 pub use triangulation::{Refinement, triangulate_polygons};
 pub use weighting::{EditableWeights, checked_weights, editable_weights};

@@ -1,6 +1,7 @@
 //! A level of the scale space in bytes, for searches that compare it at thousands of places.
 
-use super::blur::{ChannelImage, LANES, Pixel};
+use super::blur::{CHANNELS, ChannelImage, LANES, Pixel};
+use crate::math::Point;
 
 /// The channels of a pixel in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,6 +29,11 @@ impl Bytes {
         Self(std::array::from_fn(|k| {
             (pixel[k] * STEPS_PER_UNIT + zero[k] + 0.5) as u8
         }))
+    }
+
+    /// The coverage, in steps.
+    pub(crate) fn coverage(&self) -> u8 {
+        self.0[CHANNELS - 1]
     }
 
     /// The sum of the absolute differences of all channels, in steps. The processor has an instruction for it.
@@ -71,6 +77,17 @@ impl ByteImage {
         let row = (y as usize).min(self.height - 1) + self.frame - reach;
         let first = row * self.stride() + column;
         &self.pixels[first..first + 2 * reach * (self.stride() + 1) + 1]
+    }
+
+    /// Columns and rows, without the frame.
+    pub(crate) fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
+    /// The pixel that holds a place, or the nearest one.
+    #[inline(always)]
+    pub(crate) fn pixel(&self, place: Point) -> &Bytes {
+        &self.around(place.x as f32, place.y as f32, 0)[0]
     }
 
     fn stride(&self) -> usize {

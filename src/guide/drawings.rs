@@ -105,6 +105,22 @@
 //! inbetween separate cat/scene.toml -o cat-layers
 //! ```
 //!
+//! # Parts that lie over one another
+//!
+//! An arm in front of the chest, legs that cross, a hand on the hip: there the outline of a drawing does not show where the parts end. If another
+//! drawing shows them apart, they are found by what is drawn: the limbs of the drawing with the longest outline for its area, the *open* one, are sought in those whose outline is clearly
+//! shorter. The mesh then lies over itself in these poses; frames are painted from back to front, each part cut out by its own edge, and what a
+//! drawing hides is shown from those that show it.
+//!
+//! ```toml
+//! [input]
+//! overlaps = "refuse"   # outlines have to correspond as they are; "auto" without it
+//! ```
+//!
+//! Landmarks help here as elsewhere: one on a hand says which hand it is. `inbetween map` writes which poses lie over themselves (`immersed`), how near every
+//! triangle is there, and the limbs. What no drawing shows apart cannot be found, nor what lies within the open drawing's own silhouette: draw one pose with the arms away from
+//! the body. Such a character is painted as pixels, its SVG drawings too; Spine, glTF and the runtime file have its mesh without the order of depth.
+//!
 //! # Holes
 //!
 //! Holes that all poses have, such as the space between an arm on the hip and the body, are holes of the shape and correspond. Holes that
@@ -144,7 +160,7 @@
 //! # What cannot be told
 //!
 //! What is as white as the paper belongs to the figure only if a line or paint encloses it. A figure on a background that is not plain has
-//! to be cut out. What is hidden in one drawing and seen in another is stretched or faded, unless it is a
-//! [layer](super::layers) of its own.
+//! to be cut out. What no drawing shows apart from what hides it is
+//! stretched or faded, unless it is a [layer](super::layers) of its own.
 //!
 //! The next chapter: [`landmarks`](super::landmarks).

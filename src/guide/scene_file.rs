@@ -15,6 +15,7 @@
 //! threshold = 0.5                 # 0.5: above 0 and below 1
 //! holes = "match"                 # "match": "keep", "fill"
 //! parts = "layers"                # "layers": "largest"
+//! overlaps = "auto"               # "auto": "refuse"; parts that lie over one another
 //! cells = [4, 2]                  # none: columns and rows of sheets
 //!
 //! [mesh]                          # see the chapter on blending

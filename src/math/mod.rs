@@ -8,6 +8,7 @@
 //! areas, angles) are plain floating point.
 
 pub(crate) mod angle;
+mod cells;
 mod disjoint_sets;
 pub mod matrix;
 pub mod point;
@@ -20,6 +21,7 @@ mod smooth_step;
 mod vectorised;
 mod wrapped;
 
+pub(crate) use cells::for_each_cell;
 pub(crate) use disjoint_sets::DisjointSets;
 pub(crate) use matrix::PolarSplit;
 pub use matrix::{Matrix, rotation};

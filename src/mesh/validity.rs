@@ -65,6 +65,23 @@ pub enum ValidityError {
 /// # Errors
 /// The first defect found, as a [`ValidityError`].
 pub fn check_embedding(topology: &Topology, positions: &[Point], rings: &[Vec<usize>]) -> Result<(), ValidityError> {
+    check_immersion(topology, positions, rings)?;
+    let mut curves = Vec::with_capacity(rings.len());
+    for (ring, vertices) in rings.iter().enumerate() {
+        let curve = Ring::new(vertices.iter().map(|&v| positions[v]))
+            .map_err(|source| ValidityError::BadRing { ring, source })?;
+        curves.push(curve);
+    }
+    let outer = curves.remove(0);
+    Outline::new(outer, curves)?;
+    Ok(())
+}
+
+/// Proves what can be proven of a mesh at `positions` that may lie over itself: every triangle is positive, and `rings` are its boundary.
+///
+/// # Errors
+/// The first defect found, as a [`ValidityError`].
+pub fn check_immersion(topology: &Topology, positions: &[Point], rings: &[Vec<usize>]) -> Result<(), ValidityError> {
     if positions.len() != topology.vertex_count() {
         return Err(ValidityError::WrongCount {
             positions: positions.len(),
@@ -83,14 +100,6 @@ pub fn check_embedding(topology: &Topology, positions: &[Point], rings: &[Vec<us
             });
         }
     }
-    let mut curves = Vec::with_capacity(rings.len());
-    for (ring, vertices) in rings.iter().enumerate() {
-        let curve = Ring::new(vertices.iter().map(|&v| positions[v]))
-            .map_err(|source| ValidityError::BadRing { ring, source })?;
-        curves.push(curve);
-    }
-    let outer = curves.remove(0);
-    Outline::new(outer, curves)?;
     Ok(())
 }
 

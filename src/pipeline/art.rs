@@ -11,7 +11,7 @@ use crate::input::Drawing;
 use crate::pose::TextureMesh;
 use crate::render::drawing::{CarriedDrawing, PoseArt, VectorNode, VectorPicture};
 use crate::render::puppet::{PuppetLayer, PuppetTexture};
-use crate::render::{Camera, PaintOptions, Painter, PoseTexture, Sampling, Texture};
+use crate::render::{Camera, Frame, OverlapPainter, PaintOptions, Painter, PoseTexture, Sampling, Texture};
 
 /// The drawings of a layer, ready to be drawn on its mesh.
 #[derive(Debug)]
@@ -36,6 +36,8 @@ pub(super) struct View {
 #[derive(Debug)]
 enum Style {
     Pixels(Box<Painter>),
+    /// Pixels of a figure that lies over itself.
+    Overlapping(Box<OverlapPainter>),
     Curves(Box<CarriedDrawing>),
 }
 
@@ -56,7 +58,8 @@ impl LayerArt {
         let (mapping, silhouette) = (shape.mapping(), shape.silhouette.clone());
         let mut drawings = drawings.to_vec();
         let blending = texture.blending;
-        let style = match curves(texture.art, &drawings, &drawn_on) {
+        let overlaps = !mapping.overlaps.is_empty();
+        let style = match curves(texture.art, &drawings, &drawn_on).filter(|_| !overlaps) {
             Some(curves) => {
                 let (carried, remarks) = CarriedDrawing::new(mapping, curves, drawing_of.clone(), silhouette, camera);
                 let remark = |cross_fade| part.named(Note::on_all(NoteKind::CrossFaded(cross_fade)));
@@ -67,6 +70,24 @@ impl LayerArt {
                 let scale = camera.scale() * samples as f64;
                 sharpen(part.layer, &mut drawings, scale).map_err(|error| part.refusal(error))?;
                 let sampling = texture.sampling;
+                let options = PaintOptions {
+                    blending,
+                    supersample: samples,
+                    sampling,
+                };
+                let shown = drawing_of.clone();
+                if overlaps {
+                    let drawn: Vec<(&Drawing, usize)> = (drawings.iter().map(Arc::as_ref))
+                        .zip(drawn_on.iter().copied())
+                        .collect();
+                    let painter = OverlapPainter::new(mapping, &drawn, &shown, silhouette, camera, options);
+                    return Ok(Self {
+                        style: Style::Overlapping(Box::new(painter)),
+                        drawings,
+                        drawn_on,
+                        drawing_of,
+                    });
+                }
                 let texture = |(drawing, &drawn_on): (&Arc<Drawing>, &usize)| PoseTexture {
                     texture: match sampling {
                         Sampling::Smooth => Texture::new(&drawing.picture, &drawing.outline, scale),
@@ -75,12 +96,6 @@ impl LayerArt {
                     drawn_on,
                 };
                 let textures = drawings.iter().zip(&drawn_on).map(texture).collect();
-                let options = PaintOptions {
-                    blending,
-                    supersample: samples,
-                    sampling,
-                };
-                let shown = drawing_of.clone();
                 let painter = Painter::registered(mapping, mesh(), textures, shown, silhouette, camera, options);
                 Style::Pixels(Box::new(painter))
             }
@@ -93,10 +108,18 @@ impl LayerArt {
         })
     }
 
-    /// What paints the layer, if that is pixels.
-    pub(super) fn painter(&self) -> Option<&Painter> {
+    /// Whether the layer is painted as pixels.
+    pub(super) fn is_pixels(&self) -> bool {
+        !matches!(self.style, Style::Curves(_))
+    }
+
+    /// The layer painted, if that is pixels.
+    pub(super) fn paint(&self, posed: &PosedLayer) -> Option<Frame> {
         match &self.style {
-            Style::Pixels(painter) => Some(painter),
+            Style::Pixels(painter) => Some(painter.paint(&posed.positions, &posed.weights, &posed.texture_weights)),
+            Style::Overlapping(painter) => {
+                Some(painter.paint(&posed.positions, &posed.weights, &posed.texture_weights))
+            }
             Style::Curves(_) => None,
         }
     }
@@ -105,11 +128,15 @@ impl LayerArt {
     pub(super) fn draw(&self, posed: &PosedLayer) -> Vec<VectorNode> {
         match &self.style {
             Style::Curves(drawing) => drawing.frame(&posed.positions, &posed.weights, &posed.texture_weights),
-            Style::Pixels(painter) => vec![VectorNode::Picture(VectorPicture {
-                id: "picture".to_owned(),
-                frame: painter.paint(&posed.positions, &posed.weights, &posed.texture_weights),
-                opacity: 1.0,
-            })],
+            Style::Pixels(_) | Style::Overlapping(_) => (self.paint(posed).into_iter())
+                .map(|frame| {
+                    VectorNode::Picture(VectorPicture {
+                        id: "picture".to_owned(),
+                        frame,
+                        opacity: 1.0,
+                    })
+                })
+                .collect(),
         }
     }
 

@@ -45,6 +45,8 @@ impl Boundaries {
         before: Option<&Self>,
         begins: &mut dyn FnMut(Stage),
     ) -> Result<Self, PipelineError> {
+        // Of a figure that lay over itself only the open poses were mapped so.
+        let before = before.filter(|before| before.outlines.len() == drawings.len());
         begins(Stage::Matching);
         let mut outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
         let options = layer.mesh.simplify.clone();
@@ -119,7 +121,10 @@ impl Boundaries {
 
     /// Whether they are those of this layer, too, whose drawings are the same.
     pub(super) fn serve(&self, layer: &LayerSpec, known: &Known) -> bool {
-        self.known == *known && self.reference == layer.reference && self.tolerance == layer.mesh.simplify.tolerance
+        self.outlines.len() == layer.poses.len()
+            && self.known == *known
+            && self.reference == layer.reference
+            && self.tolerance == layer.mesh.simplify.tolerance
     }
 }
 

@@ -29,8 +29,8 @@ use super::layout::placed;
 use super::mapping::map_drawings_again;
 use super::note::Note;
 use super::spec::{
-    ArtChoice, CameraRule, CharacterSpec, DrawnPose, LandmarkSpec, LayerSpec, MeshOptions, PathSpec, Places, PoseSpec,
-    Register, WeightOptions,
+    ArtChoice, CameraRule, CharacterSpec, DrawnPose, LandmarkSpec, LayerSpec, MeshOptions, OverlapSearch, PathSpec,
+    Places, PoseSpec, Register, WeightOptions,
 };
 use super::{
     Character, EditableWeights, MappingReport, PipelineError, checked_weights, editable_weights, landmarks, textures,
@@ -79,6 +79,7 @@ struct MappingInput {
     landmarks: Vec<LandmarkSpec>,
     paths: Vec<PathSpec>,
     mesh: MeshOptions,
+    overlaps: OverlapSearch,
 }
 
 impl MappingInput {
@@ -89,6 +90,7 @@ impl MappingInput {
             landmarks: layer.landmarks.clone(),
             paths: layer.paths.clone(),
             mesh: layer.mesh.clone(),
+            overlaps: layer.overlaps,
         }
     }
 }
@@ -271,6 +273,9 @@ impl Build {
             return None;
         }
         let (of, mapping) = (&self.layers[layer], self.figure.layers[layer].mapping());
+        if !mapping.overlaps.is_empty() {
+            return None;
+        }
         let made = || textures::registered(&self.spec.layers[layer], &of.boundaries, mapping).map(Arc::new);
         of.texture_mesh.get_or_init(made).clone()
     }
@@ -278,7 +283,9 @@ impl Build {
     /// Whether frames of a layer are curves: its drawings are, and the specification wants them so.
     #[must_use]
     pub fn is_drawn_as_curves(&self, layer: usize) -> bool {
-        self.spec.texture.art == ArtChoice::Curves && self.drawings(layer).iter().all(|drawing| drawing.art.is_some())
+        self.spec.texture.art == ArtChoice::Curves
+            && self.figure.layers[layer].mapping().overlaps.is_empty()
+            && self.drawings(layer).iter().all(|drawing| drawing.art.is_some())
     }
 
     /// The character for weights, one a pose, that sum to 1; its textures as sharp as the specification says, or as `sharpness`

@@ -14,7 +14,7 @@ use crate::animation::{Animation, Background};
 use crate::pipeline::spec::CharacterSpec;
 use crate::render::drawing::{VectorFrame, VectorGroup, VectorNode};
 use crate::render::puppet::{Puppet, PuppetFrame};
-use crate::render::{Camera, Frame, PaintOptions, Painter, Sampling};
+use crate::render::{Camera, Frame, PaintOptions, Sampling};
 use crate::weights::WeightProvider;
 
 /// A character with everything that is computed once: mappings, factorised blends, weights, textures, camera.
@@ -155,17 +155,16 @@ impl Character {
     /// Paints a frame.
     #[must_use]
     pub fn paint(&self, posed: &Posed) -> Frame {
-        let painters: Option<Vec<&Painter>> = self.art.iter().map(LayerArt::painter).collect();
-        let Some(painters) = painters else {
+        if !self.art.iter().all(LayerArt::is_pixels) {
             return self.draw(posed).rasterise(self.samples);
-        };
+        }
         let mut frame: Option<Frame> = None;
         for &k in &posed.order {
             let layer = &posed.layers[k];
             if layer.opacity <= 0.0 {
                 continue;
             }
-            let own = painters[k].paint(&layer.positions, &layer.weights, &layer.texture_weights);
+            let Some(own) = self.art[k].paint(layer) else { continue };
             match &mut frame {
                 None if layer.opacity == 1.0 => frame = Some(own),
                 before => before

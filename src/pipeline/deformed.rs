@@ -125,7 +125,12 @@ pub(super) fn with_copies(
         .map(|row| poses.iter().map(|pose| pose.parameters[row]).collect())
         .collect();
     let (positions, outlines): (Vec<_>, Vec<_>) = poses.into_iter().map(|pose| (pose.positions, pose.outline)).unzip();
+    let mut overlaps = drawn.overlaps;
+    for overlapping in &mut overlaps.poses {
+        overlapping.pose = order[overlapping.pose];
+    }
     let whole = Mapping {
+        overlaps,
         poses: PoseSet::new(
             drawn.poses.topology().clone(),
             names.iter().cloned().zip(positions).collect(),

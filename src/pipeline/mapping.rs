@@ -7,7 +7,8 @@ use super::drawings::used_drawings;
 use super::drawn::{Known, is_found};
 use super::landmarks::{self, Landmarks};
 use super::note::{Note, NoteKind};
-use super::spec::{LayerRole, LayerSpec};
+use super::overlapping::{self, Overlapping};
+use super::spec::{LayerRole, LayerSpec, OverlapSearch};
 use super::triangulation::{self, Labels};
 use super::{MappingReport, PipelineError, Stage, deformed};
 use crate::appearance::Appearance;
@@ -16,13 +17,17 @@ use crate::compatible::{
 };
 use crate::input::{Drawing, InputNote};
 use crate::math::Point;
+use crate::mesh::PointLocator;
 use crate::outline::{ArcLength, Outline};
-use crate::pose::{Mapping, Matching, MeshQuality, PoseSet};
+use crate::pose::{Mapping, Matching, MeshQuality, Overlaps, PoseSet};
 use crate::registration::Explained;
 
 /// Lines inside are simplified to the mesh's tolerance; where they then touch the outline or one another, to these shares
 /// of it.
 const FINER_LINES: [f64; 4] = [1.0, 0.25, 0.0625, 0.0];
+
+/// The share of the tolerance that the outlines of figures have some of whose poses lie over themselves.
+const OVERLAPPING_TOLERANCE: f64 = 0.5;
 
 /// By how much, as a fraction, the units of drawings may differ without a word: rounding of a page's size.
 const LIKE_UNITS: f64 = 0.02;
@@ -91,6 +96,9 @@ fn map_drawn(
     let landmarks = landmarks::sorted(layer, drawings)?;
 
     let known = Known::of(&landmarks);
+    if let Some(overlapping) = overlapping::found(layer, drawings, &known)? {
+        return map_overlapping(layer, drawings, &overlapping, notes, begins);
+    }
     let boundaries = match before.filter(|before| before.serve(layer, &known)) {
         Some(same) => Arc::clone(same),
         None => Arc::new(Boundaries::new(
@@ -180,6 +188,7 @@ fn map_drawn(
         quality: MeshQuality::of(&poses),
     };
     let mapping = Mapping {
+        overlaps: Overlaps::default(),
         poses,
         outlines: outlines.clone(),
         rings: mesh.rings,
@@ -190,6 +199,68 @@ fn map_drawn(
         },
     };
     Ok((mapping, report, Arc::clone(&boundaries)))
+}
+
+/// Maps a layer without copies some of whose drawings lie over themselves; `notes` are those that are known.
+fn map_overlapping(
+    layer: &LayerSpec,
+    drawings: &[Arc<Drawing>],
+    overlapping: &Overlapping,
+    mut notes: Vec<Note>,
+    begins: &mut dyn FnMut(Stage),
+) -> Result<(Mapping, MappingReport, Arc<Boundaries>), PipelineError> {
+    let names = layer.names();
+    let kept = overlapping.open();
+    let mut open = layer.only(&kept);
+    open.overlaps = OverlapSearch::Refuse;
+    // What lies over something shows its own edge there: the mesh is held closer to it.
+    open.mesh.simplify.tolerance *= OVERLAPPING_TOLERANCE;
+    let open_drawings: Vec<Arc<Drawing>> = kept.iter().map(|pose| Arc::clone(&drawings[*pose])).collect();
+    let (mapping, of_open, boundaries) = map_drawn(&open, &open_drawings, None, begins)?;
+    notes.extend(
+        of_open
+            .notes
+            .into_iter()
+            .filter(|note| !matches!(note.kind, NoteKind::Drawing(_))),
+    );
+    let outlines = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
+    let whole = overlapping.completed(&names, outlines, &mapping)?;
+    let registration = &overlapping.guide().registration;
+    let explained: Vec<Option<Explained>> = (0..names.len()).map(|pose| registration.explained(pose)).collect();
+    let template = PointLocator::new(
+        whole.poses.topology().triangles(),
+        &whole.poses.positions()[overlapping.guide().reference],
+    );
+    let of_template = kept
+        .iter()
+        .position(|pose| *pose == overlapping.guide().reference)
+        .unwrap_or(0);
+    let mut landmarks = of_open.landmarks;
+    for landmark in &mut landmarks {
+        let carried = |pose: usize| match kept.iter().position(|kept| *kept == pose) {
+            Some(number) => landmark.at[number].clone(),
+            None => {
+                let bound = landmark.at[of_template].iter().filter_map(|p| template.bind(*p));
+                bound.map(|bound| bound.at(&whole.poses.positions()[pose])).collect()
+            }
+        };
+        let at = (0..names.len()).map(carried).collect();
+        let given = |pose: usize| {
+            kept.iter()
+                .position(|kept| *kept == pose)
+                .is_some_and(|number| landmark.given[number])
+        };
+        (landmark.given, landmark.at) = ((0..names.len()).map(given).collect(), at);
+    }
+    let report = MappingReport {
+        notes,
+        matching: overlapping.matched.outer.clone(),
+        explained,
+        landmarks,
+        quality: MeshQuality::of(&whole.poses),
+        ..of_open
+    };
+    Ok((whole, report, boundaries))
 }
 
 /// Says which poses show something else than the reference, and where a landmark would say most. Of two shapes on which nothing is drawn, there is nothing

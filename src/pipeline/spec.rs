@@ -188,8 +188,26 @@ pub struct LayerSpec {
     pub attachment: Option<Attachment>,
     /// What becomes of holes that not all of its drawings have.
     pub unshared_holes: UnsharedHoles,
+    /// Whether poses are looked for in which parts of the figure lie over one another.
+    pub overlaps: OverlapSearch,
     /// What it is of the character.
     pub role: LayerRole,
+}
+
+/// Whether poses are looked for in which parts of the figure lie over one another: an arm in front of the chest, legs that cross.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum OverlapSearch {
+    /// They are found by what is drawn, where outlines are clearly shorter than that of the most open drawing.
+    #[default]
+    Auto,
+    /// Outlines have to correspond as they are.
+    Refuse,
+}
+
+impl OverlapSearch {
+    /// What each is called in scene files.
+    pub const NAMED: [(&'static str, Self); 2] = [("auto", Self::Auto), ("refuse", Self::Refuse)];
 }
 
 /// What a layer is of a character.
@@ -407,6 +425,7 @@ impl LayerSpec {
             blend: BlendOptions::default(),
             attachment: None,
             unshared_holes: UnsharedHoles::default(),
+            overlaps: OverlapSearch::default(),
             role: LayerRole::default(),
         }
     }

@@ -52,6 +52,7 @@ pub fn triangulate_polygons(polygons: &Polygons, refinement: &Refinement) -> Res
             reference: 0,
             outer: polygons.matching(),
         },
+        overlaps: crate::pose::Overlaps::default(),
     })
 }
 

@@ -10,7 +10,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Mapping, Matching, PoseSet, PoseSetError};
+use super::{Mapping, Matching, OverlappingPose, Overlaps, PoseSet, PoseSetError};
 use crate::matching::{Correspondence, CorrespondenceError};
 use crate::math::Point;
 use crate::mesh::{Topology, TopologyError};
@@ -105,7 +105,21 @@ struct MappingText {
     triangles: Vec<[usize; 3]>,
     rings: Vec<Vec<usize>>,
     steiner: usize,
+    /// Poses that lie over themselves, and the limbs that do.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    immersed: Vec<ImmersedText>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    limbs: Vec<String>,
+    /// -1 of the trunk.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    triangle_limb: Vec<i64>,
     matching: MatchingText,
+}
+
+#[derive(Serialize, Deserialize)]
+struct ImmersedText {
+    pose: String,
+    depth: Vec<f64>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -139,7 +153,8 @@ impl PartText {
 #[derive(Serialize, Deserialize)]
 struct MatchingText {
     reference: String,
-    samples: Vec<Vec<f64>>,
+    /// `null` in poses that lie over themselves: part of their boundary is hidden.
+    samples: Vec<Vec<Option<f64>>>,
 }
 
 impl Mapping {
@@ -172,14 +187,34 @@ impl Mapping {
             triangles: self.poses.topology().triangles().to_vec(),
             rings: self.rings.clone(),
             steiner: self.steiner,
+            immersed: (self.overlaps.poses.iter())
+                .map(|known| ImmersedText {
+                    pose: names.get(known.pose).cloned().unwrap_or_default(),
+                    depth: known.depth.clone(),
+                })
+                .collect(),
+            limbs: self.overlaps.limbs.clone(),
+            triangle_limb: (self.overlaps.triangle_limb.iter())
+                .map(|limb| limb.map_or(-1, |limb| i64::try_from(limb).unwrap_or(-1)))
+                .collect(),
             matching: MatchingText {
                 reference: names.get(self.matching.reference).cloned().unwrap_or_default(),
-                samples: samples(&self.matching.outer),
+                samples: self.written_samples(),
             },
         };
         let mut json = serde_json::to_string(&text).expect("invariant: numbers, strings and lists are always JSON");
         json.push('\n');
         json
+    }
+
+    /// The rows of the matching, without the parameters of poses whose boundary is hidden.
+    fn written_samples(&self) -> Vec<Vec<Option<f64>>> {
+        let is_seen = |pose: usize| self.overlaps.depth(pose).is_none();
+        let written = |row: Vec<f64>| {
+            let parameters = row.into_iter().enumerate();
+            parameters.map(|(pose, t)| is_seen(pose).then_some(t)).collect()
+        };
+        samples(&self.matching.outer).into_iter().map(written).collect()
     }
 
     /// Reads a mapping.
@@ -193,7 +228,10 @@ impl Mapping {
             .iter()
             .position(|pose| pose.name == text.matching.reference)
             .ok_or_else(|| MappingFileError::UnknownReference(text.matching.reference.clone()))?;
-        let outer = Correspondence::new(text.matching.samples.clone())?;
+        let is_hidden: Vec<bool> = (text.poses.iter())
+            .map(|pose| text.immersed.iter().any(|known| known.pose == pose.name))
+            .collect();
+        let outer = Correspondence::new(filled(&text.matching.samples, &is_hidden, reference)?)?;
         if outer.pose_count() != text.poses.len() {
             return Err(MappingFileError::Counts(format!(
                 "{} poses, but the matching's rows have {} parameters",
@@ -207,7 +245,9 @@ impl Mapping {
             .iter()
             .map(|pose| outline(pose, open))
             .collect::<Result<_, _>>()?;
+        let overlaps = overlaps(&text)?;
         Ok(Self {
+            overlaps,
             outlines,
             rings: text.rings.clone(),
             steiner: text.steiner,
@@ -384,6 +424,67 @@ fn assemble(name: &str, rings: Vec<Ring>) -> Result<Outline, MappingFileError> {
     })
 }
 
+/// Rows of the matching in which hidden boundaries have the reference's parameters.
+fn filled(
+    samples: &[Vec<Option<f64>>],
+    is_hidden: &[bool],
+    reference: usize,
+) -> Result<Vec<Vec<f64>>, MappingFileError> {
+    let row = |(number, row): (usize, &Vec<Option<f64>>)| {
+        let own = row.get(reference).copied().flatten();
+        let parameter = |(pose, t): (usize, &Option<f64>)| {
+            t.or(if is_hidden.get(pose) == Some(&true) { own } else { None })
+                .ok_or_else(|| {
+                    MappingFileError::Counts(format!(
+                        "row {number} of the matching has no parameter for pose {pose}, which does not lie over itself"
+                    ))
+                })
+        };
+        row.iter().enumerate().map(parameter).collect()
+    };
+    samples.iter().enumerate().map(row).collect()
+}
+
+/// Where the mesh lies over itself.
+fn overlaps(text: &MappingText) -> Result<Overlaps, MappingFileError> {
+    let triangles = text.triangles.len();
+    let poses = text.immersed.iter().map(|known| {
+        let pose = text.poses.iter().position(|pose| pose.name == known.pose);
+        match pose.filter(|_| known.depth.len() == triangles) {
+            Some(pose) => Ok(OverlappingPose {
+                pose,
+                depth: known.depth.clone(),
+            }),
+            None => Err(MappingFileError::Counts(format!(
+                "'immersed' names pose '{}' with {} depths; the mesh has {triangles} triangles",
+                known.pose,
+                known.depth.len()
+            ))),
+        }
+    });
+    let poses = poses.collect::<Result<Vec<_>, _>>()?;
+    let limb = |limb: &i64| match usize::try_from(*limb) {
+        Ok(limb) if limb < text.limbs.len() => Ok(Some(limb)),
+        Err(_) if *limb == -1 => Ok(None),
+        _ => Err(MappingFileError::Counts(format!(
+            "'triangle_limb' has {limb}, but there are {} limbs",
+            text.limbs.len()
+        ))),
+    };
+    let triangle_limb: Vec<Option<usize>> = text.triangle_limb.iter().map(limb).collect::<Result<_, _>>()?;
+    if !triangle_limb.is_empty() && triangle_limb.len() != triangles {
+        return Err(MappingFileError::Counts(format!(
+            "'triangle_limb' has {} entries for {triangles} triangles",
+            triangle_limb.len()
+        )));
+    }
+    Ok(Overlaps {
+        poses,
+        limbs: text.limbs.clone(),
+        triangle_limb,
+    })
+}
+
 fn pairs(points: &[Point]) -> Vec<[f64; 2]> {
     points.iter().map(|p| [p.x, p.y]).collect()
 }
@@ -429,6 +530,7 @@ mod tests {
                 outer: Correspondence::new(vec![vec![0.0, 0.1], vec![0.25, 0.3], vec![0.5, 0.7], vec![0.75, 0.9]])
                     .expect("monotone"),
             },
+            overlaps: crate::pose::Overlaps::default(),
         }
     }
 

@@ -1,7 +1,9 @@
 //! The N-way mapping: what the pipeline makes of N drawings, and what every later stage starts from.
 
 use super::PoseSet;
+use super::overlaps::{OverlappingPose, Overlaps, undecided};
 use crate::matching::Correspondence;
+use crate::math::Point;
 use crate::mesh::validity::{self, ValidityError};
 use crate::outline::Outline;
 
@@ -27,8 +29,10 @@ pub struct Mapping {
     pub rings: Vec<Vec<usize>>,
     /// Interior vertices that the triangulation itself had to add, before refinement.
     pub steiner: usize,
-    /// How the outlines correspond.
+    /// How the outlines correspond. In poses that lie over themselves part of the boundary is hidden: their parameters say little.
     pub matching: Matching,
+    /// Where the mesh lies over itself.
+    pub overlaps: Overlaps,
 }
 
 /// What is wrong with a mapping.
@@ -42,6 +46,14 @@ pub enum MappingError {
         pose: String,
         /// The defect.
         source: ValidityError,
+    },
+    /// Parts of a pose lie over one another, and nothing says which is nearer.
+    #[error("pose '{pose}': triangles {} and {} lie over one another and are equally near", triangles[0], triangles[1])]
+    Undecided {
+        /// The pose's name.
+        pose: String,
+        /// The triangles.
+        triangles: [usize; 2],
     },
     /// Numbers of poses or holes disagree.
     #[error("{0}")]
@@ -68,7 +80,8 @@ impl Mapping {
     pub const ENCLOSURE_TOLERANCE: f64 = 1e-9;
 
     /// Proves the mapping valid: one topology, every triangle positive in every pose, simple boundaries equal to the
-    /// stated rings, every outline point inside its mesh.
+    /// stated rings, every outline point inside its mesh. Of poses that lie over themselves: positive triangles, the stated rings, and depths that
+    /// tell which of two triangles is nearer wherever they lie over one another.
     ///
     /// # Errors
     /// The first defect found.
@@ -81,13 +94,21 @@ impl Mapping {
                 self.matching.outer.pose_count()
             )));
         }
-        for ((name, positions), outline) in self
-            .poses
-            .names()
-            .iter()
-            .zip(self.poses.positions())
-            .zip(&self.outlines)
-        {
+        let triangles = self.poses.topology().triangles().len();
+        let overlaps = &self.overlaps;
+        let has_depths = |known: &OverlappingPose| known.depth.len() == triangles && known.pose < self.poses.len();
+        let has_limbs = overlaps.limbs.is_empty() || overlaps.triangle_limb.len() == triangles;
+        if !has_limbs || !overlaps.poses.iter().all(has_depths) {
+            return Err(MappingError::Counts(format!(
+                "the mesh has {triangles} triangles, but there are not as many depths or limbs"
+            )));
+        }
+        let named = self.poses.names().iter().zip(self.poses.positions());
+        for (pose, ((name, positions), outline)) in named.zip(&self.outlines).enumerate() {
+            if let Some(depth) = overlaps.depth(pose) {
+                self.check_overlapping(name, positions, depth)?;
+                continue;
+            }
             if outline.rings().len() != self.rings.len() {
                 return Err(MappingError::Counts(format!(
                     "pose '{name}' has {} holes, the mesh {}",
@@ -106,12 +127,22 @@ impl Mapping {
         Ok(())
     }
 
-    fn check_enclosure(
-        &self,
-        name: &str,
-        positions: &[crate::math::Point],
-        outline: &Outline,
-    ) -> Result<(), MappingError> {
+    fn check_overlapping(&self, name: &str, positions: &[Point], depth: &[f64]) -> Result<(), MappingError> {
+        let topology = self.poses.topology();
+        validity::check_immersion(topology, positions, &self.rings).map_err(|source| MappingError::Pose {
+            pose: name.to_owned(),
+            source,
+        })?;
+        match undecided(topology, positions, depth) {
+            None => Ok(()),
+            Some(triangles) => Err(MappingError::Undecided {
+                pose: name.to_owned(),
+                triangles,
+            }),
+        }
+    }
+
+    fn check_enclosure(&self, name: &str, positions: &[Point], outline: &Outline) -> Result<(), MappingError> {
         let locator = crate::mesh::PointLocator::new(self.poses.topology().triangles(), positions);
         let tolerance = Self::ENCLOSURE_TOLERANCE * outline.diagonal();
         let points = outline.rings().iter().flat_map(|ring| ring.points());

@@ -6,6 +6,7 @@ mod handles;
 mod json;
 mod landmark;
 mod mapping;
+mod overlaps;
 mod pose_set;
 mod quality;
 mod texture_mesh;
@@ -16,6 +17,7 @@ pub use handles::{DragOptions, DragReport, HandleDeformation, HandleError, Handl
 pub use json::{MappingFileError, Polygons};
 pub use landmark::{LandmarkKind, PlacedLandmark};
 pub use mapping::{Mapping, MappingError, Matching};
+pub use overlaps::{OverlappingPose, Overlaps};
 pub use pose_set::{PoseSet, PoseSetError};
 pub use quality::MeshQuality;
 pub use texture_mesh::TextureMesh;

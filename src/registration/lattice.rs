@@ -25,7 +25,8 @@ pub(super) struct Lattice {
     pub(super) edges: Vec<[usize; 2]>,
     /// The vertices next to each.
     pub(super) neighbours: Vec<Vec<usize>>,
-    triangles: Vec<[usize; 3]>,
+    /// Counter-clockwise.
+    pub(super) triangles: Vec<[usize; 3]>,
     triangles_at: Vec<Vec<usize>>,
     width: usize,
     height: usize,
@@ -107,6 +108,18 @@ impl Lattice {
                 .sum(),
             None => places[cell] + frames[cell] * (p - self.points[cell]),
         })
+    }
+
+    /// By vertex, how far its place furthest inside the figure is from the edge, in pixels.
+    pub(super) fn depths(&self) -> Vec<f64> {
+        let mut depths = vec![0.0_f64; self.points.len()];
+        let inside = depth_of_pixels(&self.distance, self.width, self.height);
+        for (owner, depth) in self.owner.iter().zip(inside) {
+            if let Some(most) = depths.get_mut(*owner as usize) {
+                *most = most.max(f64::from(depth));
+            }
+        }
+        depths
     }
 
     /// By vertex, those no further than `reach` away along edges, with their distances.
@@ -283,6 +296,29 @@ fn flooded(mut labels: Vec<u32>, width: usize, height: usize) -> (Vec<u32>, Vec<
         }
     }
     (labels, distance)
+}
+
+/// How far every pixel inside is from the nearest one outside, in pixels, by steps to neighbours along rows, columns and diagonals; 0 outside.
+fn depth_of_pixels(outside: &[f32], width: usize, height: usize) -> Vec<f32> {
+    const DIAGONAL: f32 = std::f32::consts::SQRT_2;
+    let far = (width + height) as f32;
+    let mut depth: Vec<f32> = outside.iter().map(|d| if *d > 0.0 { 0.0 } else { far }).collect();
+    let mut relax = |k: usize, sense: isize| {
+        let (column, row) = ((k % width) as isize, (k / width) as isize);
+        for (across, down, step) in [(-1, 0, 1.0), (0, -1, 1.0), (-1, -1, DIAGONAL), (1, -1, DIAGONAL)] {
+            let (x, y) = (column + sense * across, row + sense * down);
+            let is_there = (0..width as isize).contains(&x) && (0..height as isize).contains(&y);
+            let other = if is_there {
+                depth[y as usize * width + x as usize]
+            } else {
+                0.0
+            };
+            depth[k] = depth[k].min(other + step);
+        }
+    };
+    (0..width * height).for_each(|k| relax(k, 1));
+    (0..width * height).rev().for_each(|k| relax(k, -1));
+    depth
 }
 
 #[cfg(test)]

@@ -23,6 +23,7 @@ mod beginning;
 mod explained;
 mod lattice;
 mod levels;
+mod limbs;
 mod outline;
 mod pair;
 mod register;
@@ -32,4 +33,5 @@ mod textures;
 
 pub(crate) use register::difference;
 pub use register::{Explained, Pin, Registration, RegistrationError, RingPairs, register};
+pub(crate) use register::{FoundLimbs, Overlap};
 pub use textures::{Embedded, register_textures};

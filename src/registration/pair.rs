@@ -102,7 +102,7 @@ impl<'a> Pair<'a> {
         let mut coarsest = Some(coarsest);
         for (level, template) in LEVELS.iter().zip(templates) {
             let image = coarsest.take().unwrap_or_else(|| self.pose.blurred(level.deviation_px));
-            let settled = self.level(level, template, &image, &rigid, places)?;
+            let settled = self.level(level, template, &image, &rigid, places, &[])?;
             residuals = settled.fits.iter().map(|fit| fit.residual).collect();
             coarse_residual.get_or_insert_with(|| mean_residual(&settled.fits));
             (places, trusts) = (settled.places, settled.trusts);
@@ -115,6 +115,23 @@ impl<'a> Pair<'a> {
             trusts,
             beginning: beginning.number,
         })
+    }
+
+    /// The vertices registered further from where they are, at the levels from `first` on. Those that are hidden are not compared.
+    pub(super) fn settled_from(
+        &self,
+        rigid: &Rigid,
+        places: &[Point],
+        first: usize,
+        templates: &[Template],
+        is_hidden: &[bool],
+    ) -> Result<Vec<Point>, RegistrationError> {
+        let mut places = places.to_vec();
+        for (level, template) in LEVELS.iter().zip(templates).skip(first) {
+            let image = self.pose.blurred(level.deviation_px);
+            places = self.level(level, template, &image, rigid, places, is_hidden)?.places;
+        }
+        Ok(places)
     }
 
     /// The vertices moved a little towards a rigid form, so that folds come out.
@@ -148,7 +165,7 @@ impl<'a> Pair<'a> {
     }
 
     /// Joins the targets with those that pins give the vertices next to them, each by its trust.
-    fn pin(&self, rigid: &Rigid, places: &[Point], targets: &mut [Point], trust: &mut [Matrix]) {
+    pub(super) fn pin(&self, rigid: &Rigid, places: &[Point], targets: &mut [Point], trust: &mut [Matrix]) {
         if self.pins.is_empty() && self.held.is_empty() {
             return;
         }
@@ -177,6 +194,7 @@ impl<'a> Pair<'a> {
         image: &ChannelImage,
         rigid: &Rigid,
         mut places: Vec<Point>,
+        is_hidden: &[bool],
     ) -> Result<Settled, RegistrationError> {
         let window = Window::new(level.reach * PIXELS_PER_UNIT, level.step * PIXELS_PER_UNIT);
         let image = ByteImage::new(image, window.reach);
@@ -186,7 +204,12 @@ impl<'a> Pair<'a> {
             let frames = rigid.frames(&places, 1);
             fits = template.fits(&image, &places, &frames, &window, level.temperature);
             let (mut targets, mut trust) = (Vec::new(), Vec::new());
-            for (fit, place) in fits.iter().zip(&places) {
+            for (v, (fit, place)) in fits.iter().zip(&places).enumerate() {
+                if is_hidden.get(v) == Some(&true) {
+                    targets.push(*place);
+                    trust.push(Matrix::zeros());
+                    continue;
+                }
                 let confidence = f64::from(libm::expf(-fit.residual / (DOUBT * MOST_DIFFERENCE)));
                 let inverse = (fit.covariance + floor).try_inverse().unwrap_or_else(Matrix::zeros);
                 targets.push(place + fit.displacement);

@@ -1,6 +1,6 @@
 //! All poses registered to the reference.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
 
@@ -8,7 +8,9 @@ use super::beginning::{INSIDE, POINT_PX};
 use super::explained::Found;
 use super::lattice::Lattice;
 use super::levels::{LEVELS, Level};
+use super::limbs::{Limbs, Sought};
 use super::pair::Pair;
+use super::rigid::Rigid;
 use super::template::Template;
 use crate::appearance::{Appearance, ChannelImage, PIXELS_PER_UNIT};
 use crate::math::{Matrix, Point};
@@ -97,6 +99,26 @@ struct Searched {
     points: Template,
     /// Which vertices are inside the figure, away from its edge.
     inside: Vec<bool>,
+    /// Made when a pose is first sought that may lie over itself.
+    limbs: OnceLock<Option<Limbs>>,
+}
+
+/// A pose in which the limbs were sought.
+#[derive(Debug, Clone)]
+pub(crate) struct FoundLimbs {
+    placed: Arc<RegisteredPose>,
+    pub(crate) overlap: Overlap,
+}
+
+/// How a figure lies over itself in a pose.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Overlap {
+    /// By part of the figure, its rank from back to front.
+    pub(crate) ranks: Vec<usize>,
+    /// The share of the figure on which parts lie that do not hang together.
+    pub(crate) share: f64,
+    /// How badly the pose is explained where nothing may lie over anything, and where it may: 0 for a drawing like the reference, about 1 for another one.
+    pub(crate) unexplained: [f64; 2],
 }
 
 #[derive(Debug, Clone)]
@@ -108,6 +130,8 @@ struct RegisteredPose {
     places: Vec<Point>,
     frames: Vec<Matrix>,
     trusts: Vec<f64>,
+    /// By vertex, how much the drawings still differ around it.
+    residuals: Vec<f32>,
     explained: Explained,
     residual: f64,
 }
@@ -160,6 +184,74 @@ impl Registration {
         }
     }
 
+    /// The limbs of the reference sought one by one in `pose`, where the figure may lie over itself.
+    ///
+    /// # Errors
+    /// [`RegistrationError`] as of [`register`].
+    pub(crate) fn seek_limbs(&self, pose: usize) -> Result<Option<FoundLimbs>, RegistrationError> {
+        let searched = &self.searched;
+        let Some((limbs, registered)) = searched.limbs().zip(self.poses.get(pose).and_then(Option::as_ref)) else {
+            return Ok(None);
+        };
+        let pair = Pair::new(
+            &searched.lattice,
+            &searched.reference,
+            &registered.appearance,
+            &registered.pins,
+            &searched.inside,
+        );
+        let Sought {
+            places,
+            form,
+            ranks,
+            is_hidden,
+            overlap,
+            energies,
+        } = limbs.sought(&pair, &searched.templates, &registered.places, &registered.residuals)?;
+        let frames = Rigid::new(&searched.lattice, form).frames(&places, 0);
+        let trusts = (registered.trusts.iter().zip(is_hidden))
+            .map(|(trust, is_hidden)| if is_hidden { 0.0 } else { *trust })
+            .collect();
+        Ok(Some(FoundLimbs {
+            placed: Arc::new(RegisteredPose {
+                places,
+                frames,
+                trusts,
+                ..registered.as_ref().clone()
+            }),
+            overlap: Overlap {
+                ranks,
+                share: overlap,
+                unexplained: energies,
+            },
+        }))
+    }
+
+    /// From now on places of `pose` are carried to where the limbs were found.
+    pub(crate) fn place(&mut self, pose: usize, found: &FoundLimbs) {
+        if let Some(own) = self.poses.get_mut(pose) {
+            *own = Some(Arc::clone(&found.placed));
+        }
+    }
+
+    /// By part of the figure, the limb that it belongs to; `None` of the trunk. Empty if no limbs were sought.
+    #[must_use]
+    pub(crate) fn limb_of_parts(&self) -> Vec<Option<usize>> {
+        let limbs = self.searched.limbs.get().and_then(Option::as_ref);
+        limbs.map(Limbs::limb_of_parts).unwrap_or_default()
+    }
+
+    /// The part of the figure that a place of the reference is in, of those that [`Overlap::ranks`] counts; `None` if no limbs were sought.
+    #[must_use]
+    pub(crate) fn part_at(&self, place: Point) -> Option<usize> {
+        let limbs = self.searched.limbs.get()?.as_ref()?;
+        let (cell, _) = self
+            .searched
+            .lattice
+            .cell_at(self.searched.reference.to_pixels(place))?;
+        Some(limbs.part_of(cell))
+    }
+
     /// How much of what the reference shows is found in the drawing of `pose`, and where least; `None` as for [`carried`](Self::carried).
     #[must_use]
     pub fn explained(&self, pose: usize) -> Option<Explained> {
@@ -188,8 +280,20 @@ impl Searched {
                 .map(|p| coarsest.at(p.x as f32, p.y as f32)[4] >= INSIDE)
                 .collect(),
             reference: Arc::clone(reference),
+            limbs: OnceLock::new(),
             lattice,
         })
+    }
+
+    /// The limbs of the reference.
+    fn limbs(&self) -> Option<&Limbs> {
+        let made = || {
+            let levels: Vec<ChannelImage> = (LEVELS.par_iter())
+                .map(|level| self.reference.blurred(level.deviation_px))
+                .collect();
+            Limbs::new(&self.lattice, &levels)
+        };
+        self.limbs.get_or_init(made).as_ref()
     }
 
     fn registered(
@@ -217,6 +321,7 @@ impl Searched {
             places: registered.places,
             frames: registered.frames,
             trusts: registered.trusts,
+            residuals: registered.residuals,
         })
     }
 }

@@ -45,7 +45,12 @@ pub(super) struct Fit {
 impl Template {
     /// Patches with this radius, in pixels.
     pub(super) fn new(lattice: &Lattice, image: &ChannelImage, radius: f64) -> Self {
-        let offsets = disc(radius, (radius / STEPS_A_RADIUS).max(1.0));
+        Self::sampled(lattice, image, radius, STEPS_A_RADIUS)
+    }
+
+    /// The same in so many steps from their middle to their edge.
+    pub(super) fn sampled(lattice: &Lattice, image: &ChannelImage, radius: f64, steps: f64) -> Self {
+        let offsets = disc(radius, (radius / steps).max(1.0));
         let reach = GEODESIC_REACH * radius + lattice.spacing;
         let near = lattice.geodesic_neighbourhoods(reach);
         let far = (1.5 * lattice.spacing).max(0.5 * radius) as f32;
@@ -92,13 +97,27 @@ impl Template {
         window: &Window,
         temperature: f32,
     ) -> Vec<Fit> {
+        let all: Vec<usize> = (0..places.len()).collect();
+        self.fits_of(&all, image, places, frames, window, temperature)
+    }
+
+    /// The same of some vertices.
+    pub(super) fn fits_of(
+        &self,
+        vertices: &[usize],
+        image: &ByteImage,
+        places: &[Point],
+        frames: &[Matrix],
+        window: &Window,
+        temperature: f32,
+    ) -> Vec<Fit> {
         let offsets: Vec<usize> = (window.candidates.iter())
             .map(|&[x, y]| image.offset([x + window.reach as i32, y + window.reach as i32]) as usize)
             .collect();
         let displacements: Vec<Point> = (window.candidates.iter())
             .map(|&[x, y]| Point::new(f64::from(x), f64::from(y)))
             .collect();
-        let fit = |v: usize| {
+        let fit = |&v: &usize| {
             let mut costs = vec![0.0; offsets.len()];
             vectorised(
                 #[inline(always)]
@@ -106,8 +125,15 @@ impl Template {
             );
             soft_minimum(&costs, &displacements, temperature)
         };
-        let tasks = (0..places.len()).into_par_iter().with_min_len(VERTICES_A_TASK);
+        let tasks = vertices.par_iter().with_min_len(VERTICES_A_TASK);
         tasks.map(fit).collect()
+    }
+
+    /// The mean difference of vertex `v`'s patch at one place, under one linear map.
+    pub(super) fn difference_at(&self, image: &ByteImage, v: usize, place: Point, frame: &Matrix) -> f32 {
+        let mut cost = [0.0];
+        self.costs(image, v, place, frame, (0, &[0]), &mut cost);
+        cost[0]
     }
 
     /// The mean difference of vertex `v`'s patch at every candidate.

@@ -18,6 +18,7 @@ mod frame;
 mod level;
 mod nearest_seed;
 mod nearest_texel;
+mod overlap;
 mod painter;
 pub mod puppet;
 mod puppet_texture;
@@ -37,6 +38,7 @@ pub use drawing::{
 };
 pub use error::PictureError;
 pub use frame::Frame;
+pub use overlap::OverlapPainter;
 pub use painter::{PaintOptions, Painter, PoseTexture, Sampling};
 pub use puppet::{Puppet, PuppetFrame, PuppetLayer, PuppetLayerFrame, PuppetPose, PuppetTexture};
 pub use silhouette::Silhouette;

@@ -192,6 +192,27 @@ impl Painter {
     /// `texture_weights`, one a pose; those that are not positive show nothing. The background is clear.
     #[must_use]
     pub fn paint(&self, positions: &[Point], weights: &[f64], texture_weights: &[f64]) -> Frame {
+        let rings = match self.options.sampling {
+            Sampling::Smooth => self.silhouette.at(positions, weights),
+            Sampling::Nearest => Vec::new(),
+        };
+        self.paint_within(positions, weights, texture_weights, rings)
+    }
+
+    /// The same painter with these triangles of the mapping's mesh alone.
+    pub(super) fn of_triangles(mut self, triangles: Vec<[usize; 3]>) -> Self {
+        self.triangles = triangles;
+        self
+    }
+
+    /// As [`Self::paint`], cut out by `rings` instead of the silhouette.
+    pub(super) fn paint_within(
+        &self,
+        positions: &[Point],
+        weights: &[f64],
+        texture_weights: &[f64],
+        rings: Vec<Vec<Point>>,
+    ) -> Frame {
         let carried = self.mesh.as_ref().map(|mesh| mesh.at(positions, weights));
         let vertices = carried.as_deref().unwrap_or(positions);
         if self.options.sampling == Sampling::Nearest {
@@ -199,9 +220,7 @@ impl Painter {
         }
         let [columns, rows] = self.camera.size();
         let mut frame = Frame::filled(columns, rows, [0; 4]);
-        let rings: Vec<Vec<Point>> = self
-            .silhouette
-            .at(positions, weights)
+        let rings: Vec<Vec<Point>> = rings
             .into_iter()
             .map(|ring| ring.into_iter().map(|p| self.camera.to_pixels(p)).collect())
             .collect();
@@ -370,6 +389,7 @@ mod tests {
                 ])
                 .expect("monotone"),
             },
+            overlaps: crate::pose::Overlaps::default(),
         };
         let textures = [[255, 0, 0, 255], [0, 0, 255, 255]]
             .iter()

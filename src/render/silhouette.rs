@@ -72,8 +72,16 @@ impl Silhouette {
             };
             let measured: Vec<ArcLength> = curves.iter().map(|curve| ArcLength::new(curve)).collect();
             let rows = row_coordinates(correspondence, &measured);
-            let anchors: Option<Vec<Vec<MeshPoint>>> = (locators.par_iter().zip(&measured).enumerate())
-                .map(|(pose, (locator, curve))| {
+            // Where part of the boundary is hidden, it is where the mesh carries that of the reference.
+            let seen = |pose: usize| match mapping.overlaps.depth(pose) {
+                Some(_) => mapping.matching.reference,
+                None => pose,
+            };
+            let anchors: Option<Vec<Vec<MeshPoint>>> = (0..locators.len())
+                .into_par_iter()
+                .map(|pose| {
+                    let pose = seen(pose);
+                    let (locator, curve) = (&locators[pose], &measured[pose]);
                     locator.bind_along(rows.iter().map(|&row| curve.at(correspondence.parameter(pose, row))))
                 })
                 .collect();
@@ -225,6 +233,7 @@ mod tests {
                 reference: 0,
                 outer: Correspondence::identity(2, 8),
             },
+            overlaps: crate::pose::Overlaps::default(),
         }
     }
 

@@ -65,6 +65,13 @@ impl Texture {
     /// the camera's scale, times [`PaintOptions::supersample`](super::PaintOptions::supersample).
     #[must_use]
     pub fn new(picture: &Picture, outline: &Outline, samples_per_unit: f64) -> Self {
+        let rings: Vec<&[Point]> = outline.rings().iter().map(Ring::points).collect();
+        Self::within(picture, &rings, samples_per_unit)
+    }
+
+    /// The same of a shape that is given by closed polygons, which may cross one another.
+    #[must_use]
+    pub(super) fn within<R: AsRef<[Point]>>(picture: &Picture, rings: &[R], samples_per_unit: f64) -> Self {
         let mut finest = Level::new(picture.width, picture.height, picture.pixels.clone());
         let mut ratio = MOST_TEXELS as f64 / finest.width().max(finest.height()) as f64;
         let fineness = picture.pixels_per_unit / samples_per_unit;
@@ -82,7 +89,7 @@ impl Texture {
             pixels_per_unit,
             inside: Vec::new(),
         };
-        texture.bleed(outline);
+        texture.bleed(rings);
         for _ in 0..HALVINGS {
             let last = &texture.levels[texture.levels.len() - 1];
             if last.width().min(last.height()) <= 2 {
@@ -174,9 +181,11 @@ impl Texture {
         (&self.levels[self.levels.len() - 1], smaller)
     }
 
-    fn bleed(&mut self, outline: &Outline) {
+    fn bleed<R: AsRef<[Point]>>(&mut self, rings: &[R]) {
         let (width, height) = (self.levels[0].width(), self.levels[0].height());
-        let coverage = Coverage::of_outline(outline, |p| self.to_texels(p), width, height);
+        let place = |ring: &R| -> Vec<Point> { ring.as_ref().iter().map(|p| self.to_texels(*p)).collect() };
+        let polygons: Vec<Vec<Point>> = rings.iter().map(place).collect();
+        let coverage = Coverage::of(polygons.iter().map(Vec::as_slice), width, height);
         /// Below this a pixel is not wholly inside; above it only rounding is missing.
         const WHOLLY: f32 = 0.999;
         let inside = |i: usize| coverage.areas()[i] >= WHOLLY;

@@ -15,6 +15,7 @@ use super::error::{SceneError, SceneProblem};
 use super::file::SceneFile;
 use super::settings::{FrameSize, Holes, InputSettings, Layout, PoseSpaceSettings, Provider, ReadingSettings, Scene};
 use crate::input::{FigureRule, PaperRule, PartRule};
+use crate::pipeline::OverlapSearch;
 use crate::pipeline::{ArtChoice, CameraRule, MeshOptions, Register};
 use crate::render::{ColourBlend, Sampling};
 use crate::weights::{PseudoPose, Radial, Range};
@@ -350,6 +351,12 @@ impl Reader<'_> {
                 "[input] parts",
                 &PartRule::NAMED,
                 "'layers' or 'largest'",
+            )?,
+            overlaps: self.choice(
+                &written.input.overlaps,
+                "[input] overlaps",
+                &OverlapSearch::NAMED,
+                "'auto' or 'refuse'",
             )?,
             cells: match &written.input.cells {
                 Some(cells) => Some(self.whole_pair(cells, "[input] cells", 1)?),

@@ -43,6 +43,7 @@ pub(super) struct InputTable {
     pub(super) holes: Option<Spanned<String>>,
     pub(super) threshold: Option<Spanned<f64>>,
     pub(super) parts: Option<Spanned<String>>,
+    pub(super) overlaps: Option<Spanned<String>>,
     pub(super) cells: Option<Spanned<Vec<i64>>>,
 }
 

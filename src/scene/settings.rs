@@ -7,6 +7,7 @@ use crate::animation::Animation;
 use crate::blend::BlendOptions;
 use crate::input::{Extent, FigureRule, PaperRule, PartOptions, PartRule, PictureChoice};
 use crate::math::Point;
+use crate::pipeline::OverlapSearch;
 use crate::pipeline::{ArtChoice, CameraRule, DeformedCopy, Facing, MeshOptions, Register};
 use crate::render::{ColourBlend, Sampling};
 use crate::weights::{PseudoPose, Radial, Range};
@@ -92,6 +93,8 @@ pub struct InputSettings {
     pub reading: ReadingSettings,
     /// What becomes of loose parts.
     pub parts: PartRule,
+    /// Whether poses are looked for in which parts of the figure lie over one another.
+    pub overlaps: OverlapSearch,
     /// How many columns and rows of cells sheets have, where poses name a cell.
     pub cells: Option<[usize; 2]>,
 }
@@ -117,6 +120,7 @@ impl Default for InputSettings {
             holes: Holes::Match,
             reading: ReadingSettings::default(),
             parts: PartRule::default(),
+            overlaps: OverlapSearch::default(),
             cells: None,
         }
     }

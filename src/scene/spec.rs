@@ -289,6 +289,7 @@ impl Scene {
                 Holes::Keep => UnsharedHoles::Refuse,
                 Holes::Match | Holes::Fill => UnsharedHoles::Cover,
             },
+            overlaps: self.input.overlaps,
             role: LayerRole::Body,
         })
     }

@@ -31,6 +31,7 @@ fn mapping(poses: &[[[f64; 2]; 4]]) -> Mapping {
             reference: 0,
             outer: Correspondence::identity(poses.len(), 8),
         },
+        overlaps: inbetween::pose::Overlaps::default(),
     }
 }
 

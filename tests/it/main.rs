@@ -17,6 +17,7 @@ mod inner_lines;
 mod layers;
 mod long_work;
 mod mapping_report;
+mod overlaps;
 mod parts;
 mod rims;
 mod scenes;

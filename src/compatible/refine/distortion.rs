@@ -59,6 +59,17 @@ struct Rest {
 /// Minimises the distortion of all poses, with at most `sweeps` sweeps: over all vertices, then over those around which
 /// something has moved.
 pub(super) fn minimise(mesh: &mut EditableMesh, stars: &Stars, sweeps: usize, targets: &Targets) {
+    minimise_of(mesh, stars, sweeps, targets, |_| true);
+}
+
+/// The same of the poses that `moves` says; the others stay as they are.
+pub(super) fn minimise_of(
+    mesh: &mut EditableMesh,
+    stars: &Stars,
+    sweeps: usize,
+    targets: &Targets,
+    moves: impl Fn(usize) -> bool + Sync,
+) {
     let areas: Vec<f64> = mesh
         .positions
         .iter()
@@ -86,6 +97,9 @@ pub(super) fn minimise(mesh: &mut EditableMesh, stars: &Stars, sweeps: usize, ta
             .enumerate()
             .zip(&areas)
             .map(|((pose, positions), &area)| {
+                if !moves(pose) {
+                    return Vec::new();
+                }
                 let targets = targets.get(pose).and_then(Option::as_deref);
                 let scale = area.sqrt();
                 let still = STILL * (area * mean_area).sqrt();

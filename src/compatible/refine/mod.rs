@@ -20,6 +20,7 @@
 
 mod distortion;
 mod flip;
+mod follow;
 mod guide;
 mod smooth;
 mod split;
@@ -29,6 +30,7 @@ mod widen;
 #[cfg(test)]
 mod tests;
 
+pub use follow::follow;
 pub use guide::Guide;
 
 use super::CompatibleMesh;

@@ -46,6 +46,16 @@ impl Stars {
         stars
     }
 
+    /// The stars of all vertices, those of the boundary included.
+    pub(super) fn of_all(mesh: &EditableMesh) -> Self {
+        let nothing = Curves {
+            rings: Vec::new(),
+            landmarks: Vec::new(),
+            paths: Vec::new(),
+        };
+        Self::new(mesh, &nothing)
+    }
+
     /// Each movable vertex with its opposite edges.
     pub(super) fn iter(&self) -> impl Iterator<Item = (usize, &[(usize, usize)])> {
         self.vertices

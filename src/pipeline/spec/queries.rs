@@ -97,7 +97,12 @@ impl LayerSpec {
     /// The layer without its deformed copies: what is matched. Drawings are shared, not copied.
     #[must_use]
     pub(in crate::pipeline) fn only_drawn(&self) -> Self {
-        let kept = self.drawn_poses();
+        self.only(&self.drawn_poses())
+    }
+
+    /// The layer with the drawn poses `kept` alone. Drawings are shared, not copied.
+    #[must_use]
+    pub(in crate::pipeline) fn only(&self, kept: &[usize]) -> Self {
         let place = |index: usize| kept.iter().position(|&k| k == index);
         let mut layer = self.clone();
         layer.poses = kept.iter().map(|&k| self.poses[k].clone()).collect();

@@ -33,6 +33,7 @@ fn square() -> Mapping {
             reference: 0,
             outer: Correspondence::identity(2, ROWS),
         },
+        overlaps: crate::pose::Overlaps::default(),
     }
 }
 

@@ -1,0 +1,269 @@
+//! Figures that lie over themselves: a drawing whose parts are apart, found in one where an arm lies in front of the chest or legs cross.
+//!
+//! Outlines say nothing there, since part of them is hidden. So the limbs of the open drawing are sought one by one.
+//!
+//! 1. The limbs of the open figure (`articulation`).
+//! 2. What the figure explains of the pose wherever it is put (`comparison`).
+//! 3. Hypotheses for every limb (`hypotheses`), and the search among them (`search`).
+//! 4. Which part lies in front (`order`); what is hidden is then no longer compared, and the whole is registered once more.
+//!
+//! Source: Sykora, Dingliana and Collins 2009 for the registration; Felzenszwalb and Huttenlocher 2005, "Pictorial structures for object recognition", for
+//! limbs that are sought as wholes.
+//!
+//! Cost: a second or two a pose. Limits: a limb that is hidden altogether is where it is least bent; limbs that look alike may be swapped.
+
+mod articulation;
+mod comparison;
+mod hypotheses;
+mod order;
+mod search;
+
+use self::articulation::Articulation;
+use self::comparison::{BARE, Comparison, Layer};
+use self::hypotheses::Search;
+use self::search::{Finder, Fine};
+use super::lattice::Lattice;
+use super::levels::LEVELS;
+use super::pair::Pair;
+use super::register::RegistrationError;
+use super::rigid::Rigid;
+use super::template::Template;
+use crate::appearance::{ByteImage, ChannelImage, PIXELS_PER_UNIT};
+use crate::math::{Matrix, Point};
+
+/// The level whose blur figures are compared at.
+const COMPARED: usize = 2;
+/// The one at which it is decided what lies in front.
+const ORDERED: usize = 3;
+/// The patches of hypotheses: their radius, in figure units, and steps from middle to edge.
+const PATCH_RADIUS: f64 = 0.028;
+const PATCH_STEPS: f64 = 2.6;
+/// The levels that hypotheses are registered at.
+const REGISTERED: std::ops::Range<usize> = 1..3;
+/// Chains longer than this are divided into parts of about as many bands: an arm bends, and may lie in front of one thing and behind another.
+const BANDS_A_PART: usize = 4;
+/// Vertices that differ less than this say how much larger the figure is in the pose.
+const ALIKE: f32 = 0.2;
+/// By how much that may be, and the share of edges that has to say so.
+const MOST_SCALE: f64 = 1.4;
+const TELLING_SHARE: f64 = 0.2;
+/// Beginnings that leave less energy than this need no other.
+const GOOD: f64 = 0.2;
+/// One that leaves more than this explains nothing.
+const HOPELESS: f64 = 0.45;
+
+/// The limbs of a reference, and what they are sought by.
+#[derive(Debug)]
+pub(super) struct Limbs {
+    articulation: Articulation,
+    /// By vertex, the part; numbered from the root on.
+    part_of: Vec<usize>,
+    parts: usize,
+    /// The reference at the level [`COMPARED`] and at the one [`ORDERED`].
+    compared: ByteImage,
+    ordered: ByteImage,
+    patches: Template,
+}
+
+/// Where a figure was found that may lie over itself.
+#[derive(Debug, Clone)]
+pub(super) struct Sought {
+    pub(super) places: Vec<Point>,
+    /// The map under which the lattice is at rest.
+    pub(super) form: Matrix,
+    /// By part, its rank from back to front.
+    pub(super) ranks: Vec<usize>,
+    /// By vertex, whether something lies in front of it.
+    pub(super) is_hidden: Vec<bool>,
+    /// The share of the figure that lies over itself.
+    pub(super) overlap: f64,
+    /// How badly the pose is explained, by the registration that began with the outlines and now.
+    pub(super) energies: [f64; 2],
+}
+
+impl Limbs {
+    /// `None` of an empty lattice. `levels` are the reference's levels.
+    pub(super) fn new(lattice: &Lattice, levels: &[ChannelImage]) -> Option<Self> {
+        let articulation = Articulation::new(lattice)?;
+        let mut part_of = vec![0; lattice.points.len()];
+        let mut parts = 0;
+        for chain in &articulation.chains {
+            let count = (chain.nodes.len() as f64 / BANDS_A_PART as f64).round().max(1.0) as usize;
+            for (k, node) in chain.nodes.iter().enumerate() {
+                for &v in &articulation.nodes[*node] {
+                    part_of[v] = parts + k * count / chain.nodes.len();
+                }
+            }
+            parts += count;
+        }
+        Some(Self {
+            patches: Template::sampled(
+                lattice,
+                levels.get(COMPARED)?,
+                PATCH_RADIUS * PIXELS_PER_UNIT,
+                PATCH_STEPS,
+            ),
+            compared: ByteImage::new(levels.get(COMPARED)?, 0),
+            ordered: ByteImage::new(levels.get(ORDERED)?, 0),
+            articulation,
+            part_of,
+            parts,
+        })
+    }
+
+    /// The part of a vertex.
+    pub(super) fn part_of(&self, vertex: usize) -> usize {
+        self.part_of[vertex]
+    }
+
+    /// By part, the chain that it belongs to if nothing hangs on that; `None` of the trunk. Numbered from 0.
+    pub(super) fn limb_of_parts(&self) -> Vec<Option<usize>> {
+        let mut limbs = vec![None; self.parts];
+        let mut count = 0;
+        for (chain, of) in self.articulation.chains.iter().enumerate() {
+            if chain == 0 || !self.articulation.below(chain).is_empty() {
+                continue;
+            }
+            for &v in of.nodes.iter().flat_map(|node| &self.articulation.nodes[*node]) {
+                limbs[self.part_of[v]] = Some(count);
+            }
+            count += 1;
+        }
+        limbs
+    }
+
+    /// The reference sought in a pose where a registration that began with the outlines has it at `places`, with `residuals` left at every vertex;
+    /// `templates` are those of all levels.
+    pub(super) fn sought(
+        &self,
+        pair: &Pair<'_>,
+        templates: &[Template],
+        places: &[Point],
+        residuals: &[f32],
+    ) -> Result<Sought, RegistrationError> {
+        let lattice = pair.lattice;
+        let image = ByteImage::new(&pair.pose.blurred(LEVELS[COMPARED].deviation_px), 0);
+        let chains = (&self.articulation.chain_of[..], self.articulation.chains.len());
+        let comparison = Comparison::new(lattice, chains, &self.compared, &image);
+        let given = comparison.energy(&comparison.layers(places));
+        // A beginning that explains nothing says nothing of the size, either: drawings of a character are as large as one another in their own units.
+        let scale = if given > HOPELESS {
+            (pair.pose.scale() / pair.reference.scale()).clamp(1.0 / MOST_SCALE, MOST_SCALE)
+        } else {
+            scale(lattice, places, residuals)
+        };
+        let levels: Vec<Fine<'_>> = (REGISTERED.zip(&templates[REGISTERED]))
+            .map(|(level, template)| Fine::new(&LEVELS[level], template, pair))
+            .collect();
+        let form = Matrix::identity() * scale;
+        let finder = Finder {
+            pair,
+            limbs: &self.articulation,
+            comparison: &comparison,
+            search: Search {
+                limbs: &self.articulation,
+                comparison: &comparison,
+                patches: &self.patches,
+                scale,
+            },
+            rigid: Rigid::new(lattice, form),
+            levels: &levels,
+        };
+        let given = finder.put(places.to_vec());
+        let before = given.energy;
+        let mut begun = given;
+        if before > GOOD {
+            begun = match finder.grown()? {
+                Some(grown) if grown.energy < before => grown,
+                _ => begun,
+            };
+        }
+        let found = finder.improved(begun)?;
+        let mut sought = Sought {
+            places: found.places,
+            form,
+            ranks: Vec::new(),
+            is_hidden: vec![false; lattice.points.len()],
+            overlap: 0.0,
+            energies: [before, found.energy],
+        };
+        // What lies in front is known better once everything is where it is seen, and the reverse.
+        for _ in 0..2 {
+            sought.places = pair.settled_from(
+                &finder.rigid,
+                &sought.places,
+                REGISTERED.end - 1,
+                templates,
+                &sought.is_hidden,
+            )?;
+            self.put_in_order(pair, &mut sought);
+        }
+        sought.energies[1] = comparison.energy(&comparison.layers(&sought.places));
+        Ok(sought)
+    }
+
+    /// Finds what lies in front, and what is hidden by it.
+    fn put_in_order(&self, pair: &Pair<'_>, sought: &mut Sought) {
+        let image = ByteImage::new(&pair.pose.blurred(LEVELS[ORDERED].deviation_px), 0);
+        let comparison = Comparison::new(pair.lattice, (&self.part_of, self.parts), &self.ordered, &image);
+        let layers = comparison.layers(&sought.places);
+        sought.ranks = order::ranks(&layers);
+        let front = front(&layers, &sought.ranks);
+        sought.is_hidden = (sought.places.iter().enumerate())
+            .map(|(v, place)| {
+                let own = self.part_of[v];
+                front[comparison.cell_at(*place)].is_some_and(|front| sought.ranks[front] > sought.ranks[own])
+                    && !self.touch(pair.lattice, v, front[comparison.cell_at(*place)])
+            })
+            .collect();
+        let lies_over = (0..front.len()).filter(|cell| comparison.figure[*cell]).filter(|cell| {
+            let there: Vec<usize> = (0..layers.len()).filter(|part| layers[*part][*cell] != BARE).collect();
+            let mut pairs = there
+                .iter()
+                .enumerate()
+                .flat_map(|(k, a)| there[..k].iter().map(move |b| (*a, *b)));
+            pairs.any(|(a, b)| !self.are_neighbours(pair.lattice, a, b))
+        });
+        sought.overlap = lies_over.count() as f64 / comparison.figure_cells() as f64;
+    }
+
+    /// Whether a vertex is next to a part.
+    fn touch(&self, lattice: &Lattice, v: usize, part: Option<usize>) -> bool {
+        lattice.neighbours[v].iter().any(|w| Some(self.part_of[*w]) == part)
+    }
+
+    /// Whether two parts hang together.
+    fn are_neighbours(&self, lattice: &Lattice, a: usize, b: usize) -> bool {
+        lattice.edges.iter().any(|[v, w]| {
+            let of = (self.part_of[*v], self.part_of[*w]);
+            of == (a, b) || of == (b, a)
+        })
+    }
+}
+
+/// By cell, the part in front.
+fn front(layers: &[Layer], ranks: &[usize]) -> Vec<Option<usize>> {
+    let cells = layers.first().map_or(0, Vec::len);
+    (0..cells)
+        .map(|cell| {
+            let there = (0..layers.len()).filter(|part| layers[*part][cell] != BARE);
+            there.max_by_key(|part| ranks[*part])
+        })
+        .collect()
+}
+
+/// How much larger the reference is in the pose, by the edges around which both look alike.
+fn scale(lattice: &Lattice, places: &[Point], residuals: &[f32]) -> f64 {
+    let is_alike = |v: usize| residuals.get(v).is_some_and(|left| *left < ALIKE);
+    let ratio = |&[a, b]: &[usize; 2]| {
+        let rest = (lattice.points[a] - lattice.points[b]).norm();
+        (rest > 0.0 && is_alike(a) && is_alike(b)).then(|| (places[a] - places[b]).norm() / rest)
+    };
+    let mut ratios: Vec<f64> = lattice.edges.iter().filter_map(ratio).collect();
+    if (ratios.len() as f64) < TELLING_SHARE * lattice.edges.len() as f64 || ratios.is_empty() {
+        return 1.0;
+    }
+    let middle = ratios.len() / 2;
+    let median = *ratios.select_nth_unstable_by(middle, f64::total_cmp).1;
+    median.clamp(1.0 / MOST_SCALE, MOST_SCALE)
+}

@@ -1,0 +1,404 @@
+//! The limbs put where they explain the pose.
+//!
+//! A registration that began with the outlines -> places of all vertices under which the figure may lie over itself.
+//!
+//! 1. A second beginning, for outlines that say nothing: the root wherever its patches fit best, then chain after chain by its best hypothesis.
+//! 2. Of both the one that explains the pose better. Then, again and again, every chain that is not explained is sought anew with what hangs on it, alone and
+//!    in pairs (legs that are swapped); the best hypotheses are registered where they lie, and one is kept if it explains the pose clearly better.
+//!
+//! What explains a pose is the whole picture ([`Comparison::energy`]): a hypothesis gains nothing where another limb explains the same.
+
+use std::collections::BTreeSet;
+
+use rayon::prelude::*;
+
+use super::articulation::Articulation;
+use super::comparison::{BARE, CELL_PX, Comparison, Layer};
+use super::hypotheses::{Hypothesis, Search, spread_out};
+use crate::appearance::{ByteImage, PIXELS_PER_UNIT, STEPS_PER_UNIT};
+use crate::math::{Matrix, Point, angle, rotation};
+use crate::registration::levels::Level;
+use crate::registration::pair::{DOUBT, Pair};
+use crate::registration::register::RegistrationError;
+use crate::registration::rigid::{Rigid, Targets};
+use crate::registration::template::{MOST_DIFFERENCE, Template, Window};
+
+/// By how much the energy has to fall for a hypothesis to be kept: less is noise.
+const CLEARLY: f64 = 0.003;
+/// Rounds of all chains at most.
+const ROUNDS: usize = 3;
+/// Hypotheses of a chain that are made, and those that are registered.
+const MADE: usize = 6;
+const TRIED: usize = 3;
+/// Of a pair: hypotheses of the first, and of the second for each of these.
+const MADE_OF_PAIR: [usize; 2] = [3, 2];
+/// A hypothesis is the present one if its vertices are this near to it, in spacings.
+const SAME: f64 = 0.6;
+/// Vertices this near to what moves are registered with it, along the lattice, in spacings.
+const AROUND: f64 = 2.5;
+/// Beside the stiffness, the trust in vertices that stay.
+const HELD: f64 = 1000.0;
+/// Stiffness and alternations that take folds out of what was put by bands.
+const SETTLING: (f64, usize) = (6.0, 6);
+/// A chain is explained where at least this share of it is seen and differs by less than this in the mean.
+const SEEN_SHARE: f64 = 0.5;
+const EXPLAINED: f64 = 0.18;
+/// Chains are tried in pairs where they come this near to one another, in spacings, and neither has more than so many times the other's vertices.
+const PAIR_REACH: f64 = 3.0;
+const PAIR_SIZES: f64 = 2.5;
+/// The root: places that go on, directions that are tried, its vertices that are compared, and what a radian of turn costs each.
+const ROOTS: usize = 3;
+const ROOT_TURNS: usize = 20;
+const ROOT_SAMPLES: usize = 24;
+const ROOT_TURN_COST: f64 = 0.02;
+/// Roots are apart by this many spacings, or this angle.
+const ROOTS_APART: (f64, f64) = (2.5, 0.7);
+
+/// A level with what is compared at it.
+pub(super) struct Fine<'a> {
+    pub(super) level: &'a Level,
+    pub(super) template: &'a Template,
+    pub(super) image: ByteImage,
+    pub(super) window: Window,
+}
+
+impl<'a> Fine<'a> {
+    pub(super) fn new(level: &'a Level, template: &'a Template, pair: &Pair<'_>) -> Self {
+        let window = Window::new(level.reach * PIXELS_PER_UNIT, level.step * PIXELS_PER_UNIT);
+        Self {
+            level,
+            template,
+            image: ByteImage::new(&pair.pose.blurred(level.deviation_px), window.reach),
+            window,
+        }
+    }
+}
+
+/// A figure put somewhere, and what it shows there.
+#[derive(Clone)]
+pub(super) struct Put {
+    pub(super) places: Vec<Point>,
+    pub(super) layers: Vec<Layer>,
+    pub(super) energy: f64,
+}
+
+/// What the search works with.
+pub(super) struct Finder<'a> {
+    pub(super) pair: &'a Pair<'a>,
+    pub(super) limbs: &'a Articulation,
+    pub(super) comparison: &'a Comparison<'a>,
+    pub(super) search: Search<'a>,
+    pub(super) rigid: Rigid<'a>,
+    /// What hypotheses are registered at, coarse to fine.
+    pub(super) levels: &'a [Fine<'a>],
+}
+
+impl Finder<'_> {
+    pub(super) fn put(&self, places: Vec<Point>) -> Put {
+        let layers = self.comparison.layers(&places);
+        Put {
+            energy: self.comparison.energy(&layers),
+            layers,
+            places,
+        }
+    }
+
+    /// The figure grown from its root, the best of some.
+    pub(super) fn grown(&self) -> Result<Option<Put>, RegistrationError> {
+        let all: Vec<usize> = (0..self.limbs.node_of.len()).collect();
+        let grown: Vec<Result<Put, RegistrationError>> = (self.roots().into_par_iter())
+            .map(|root| {
+                let mut places = vec![Point::zeros(); all.len()];
+                for (v, place) in root.places {
+                    places[v] = place;
+                }
+                let mut layers = vec![vec![BARE; self.comparison.figure.len()]; self.limbs.chains.len()];
+                layers[0] = self.comparison.layer(0, &places);
+                let chains: Vec<usize> = (1..self.limbs.chains.len()).collect();
+                self.grow(&chains, &mut places, &mut layers);
+                let settled = self.settled(&places)?;
+                Ok(self.put(self.registered(settled, &all)?))
+            })
+            .collect();
+        let mut best: Option<Put> = None;
+        for put in grown {
+            let put = put?;
+            if best.as_ref().is_none_or(|best| put.energy < best.energy) {
+                best = Some(put);
+            }
+        }
+        Ok(best)
+    }
+
+    /// The likeliest places of the root's band.
+    fn roots(&self) -> Vec<Hypothesis> {
+        let (limbs, points) = (self.limbs, &self.pair.lattice.points);
+        let band = &limbs.nodes[0];
+        let middle = band.iter().map(|v| points[*v]).sum::<Point>() / band.len().max(1) as f64;
+        let samples = spread_out(band, ROOT_SAMPLES);
+        let spacing = self.pair.lattice.spacing;
+        let [width, height] = self.search.comparison.pose.size();
+        let along = |length: usize| (0..(length as f64 / spacing) as usize).map(move |k| (k as f64 + 0.5) * spacing);
+        let middles: Vec<Point> = (along(height).flat_map(|y| along(width).map(move |x| Point::new(x, y))))
+            .filter(|p| self.comparison.figure[self.comparison.cell_at(*p)])
+            .collect();
+        let tried: Vec<(f64, Point, f64)> = (middles.par_iter())
+            .flat_map_iter(|&place| {
+                let samples = &samples;
+                (0..ROOT_TURNS).map(move |turn| {
+                    let turn_rad = angle::wrap(std::f64::consts::TAU * turn as f64 / ROOT_TURNS as f64);
+                    let frame = rotation(turn_rad) * self.search.scale;
+                    let differs = samples.iter().map(|v| {
+                        let place = place + frame * (points[*v] - middle);
+                        f64::from(
+                            self.search
+                                .patches
+                                .difference_at(self.comparison.pose, *v, place, &frame),
+                        )
+                    });
+                    let cost = differs.sum::<f64>() / samples.len().max(1) as f64 + ROOT_TURN_COST * turn_rad.abs();
+                    (cost, place, turn_rad)
+                })
+            })
+            .collect();
+        let mut order: Vec<usize> = (0..tried.len()).collect();
+        order.sort_by(|a, b| tried[*a].0.total_cmp(&tried[*b].0));
+        let mut roots: Vec<(f64, Point, f64)> = Vec::new();
+        for k in order {
+            let (_, place, turn_rad) = tried[k];
+            let is_known = roots.iter().any(|(_, other, other_rad)| {
+                (other - place).norm() < ROOTS_APART.0 * spacing
+                    && angle::wrap(other_rad - turn_rad).abs() < ROOTS_APART.1
+            });
+            if !is_known {
+                roots.push(tried[k]);
+                if roots.len() == ROOTS {
+                    break;
+                }
+            }
+        }
+        (roots.into_iter())
+            .map(|(_, place, turn_rad)| {
+                let frame = rotation(turn_rad) * self.search.scale;
+                let places = band
+                    .iter()
+                    .map(|v| (*v, place + frame * (points[*v] - middle)))
+                    .collect();
+                Hypothesis { places }
+            })
+            .collect()
+    }
+
+    /// Puts chains by their best hypotheses, one after another.
+    fn grow(&self, chains: &[usize], places: &mut [Point], layers: &mut [Layer]) {
+        for chain in chains {
+            layers[*chain].fill(BARE);
+        }
+        for &chain in chains {
+            let others = self.comparison.least(layers, |_| true);
+            let best = self.search.of_chain(chain, places, &others, 1).into_iter().next();
+            for (v, place) in best.into_iter().flat_map(|best| best.places) {
+                places[v] = place;
+            }
+            layers[chain] = self.comparison.layer(chain, places);
+        }
+    }
+
+    /// The vertices a little more rigid than bands leave them.
+    fn settled(&self, places: &[Point]) -> Result<Vec<Point>, RegistrationError> {
+        let trust = vec![Matrix::identity(); places.len()];
+        let targets = Targets { places, trust: &trust };
+        Ok(self.rigid.solve(places, &targets, SETTLING.0, SETTLING.1)?)
+    }
+
+    /// The vertices `free` registered, the others held where they are.
+    fn registered(&self, mut places: Vec<Point>, free: &[usize]) -> Result<Vec<Point>, RegistrationError> {
+        let spacing = self.pair.lattice.spacing;
+        for fine in self.levels {
+            let level = fine.level;
+            let floor = Matrix::identity() * (0.25 * fine.window.step * fine.window.step);
+            for _ in 0..level.iterations.min(3) {
+                let frames = self.rigid.frames(&places, 1);
+                let fits =
+                    (fine.template).fits_of(free, &fine.image, &places, &frames, &fine.window, level.temperature);
+                let mut targets = places.clone();
+                let mut trust = vec![Matrix::identity() * (HELD * level.stiffness); places.len()];
+                for (fit, &v) in fits.iter().zip(free) {
+                    let confidence = f64::from(libm::expf(-fit.residual / (DOUBT * MOST_DIFFERENCE)));
+                    let inverse = (fit.covariance + floor).try_inverse().unwrap_or_else(Matrix::zeros);
+                    targets[v] += fit.displacement;
+                    trust[v] = inverse * (confidence * spacing * spacing);
+                }
+                self.pair.pin(&self.rigid, &places, &mut targets, &mut trust);
+                let targets = Targets {
+                    places: &targets,
+                    trust: &trust,
+                };
+                places = self.rigid.solve(&places, &targets, level.stiffness, 5)?;
+            }
+        }
+        Ok(places)
+    }
+
+    /// The vertices of some chains and those around them.
+    fn around(&self, chains: &[usize]) -> Vec<usize> {
+        let own: Vec<usize> = chains.iter().flat_map(|chain| self.limbs.vertices(*chain)).collect();
+        let distance = self.pair.lattice.distances_from(&own);
+        let reach = AROUND * self.pair.lattice.spacing;
+        (0..distance.len()).filter(|v| distance[*v] < reach).collect()
+    }
+
+    /// Whether some chains are where they are now.
+    fn is_same(&self, now: &Put, places: &[Point], chains: &[usize]) -> bool {
+        let own = chains.iter().flat_map(|chain| self.limbs.vertices(*chain));
+        let (sum, count) = own.fold((0.0, 0usize), |(sum, count), v| {
+            (sum + (places[v] - now.places[v]).norm_squared(), count + 1)
+        });
+        (sum / count.max(1) as f64).sqrt() < SAME * self.pair.lattice.spacing
+    }
+
+    /// A chain put by its hypotheses, with what hangs on it; the one that explains most first.
+    fn with_chain(&self, chain: usize, now: &Put, gone: &[usize], most: usize) -> Vec<Put> {
+        let below = self.limbs.below(chain);
+        let leaves = |other: usize| other != chain && !below.contains(&other) && !gone.contains(&other);
+        let others = self.comparison.least(&now.layers, leaves);
+        let hypotheses = self.search.of_chain(chain, &now.places, &others, most);
+        let mut put: Vec<Put> = (hypotheses.into_par_iter())
+            .map(|hypothesis| {
+                let (mut places, mut layers) = (now.places.clone(), now.layers.clone());
+                for (v, place) in hypothesis.places {
+                    places[v] = place;
+                }
+                for &other in gone {
+                    layers[other].fill(BARE);
+                }
+                for other in &below {
+                    layers[*other].fill(BARE);
+                }
+                layers[chain] = self.comparison.layer(chain, &places);
+                self.grow(&below, &mut places, &mut layers);
+                Put {
+                    energy: self.comparison.energy(&layers),
+                    places,
+                    layers,
+                }
+            })
+            .collect();
+        put.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+        put
+    }
+
+    /// The best of some placements of chains once they are registered, if it explains the pose clearly better than now.
+    fn better(&self, now: &Put, tried: &[Put], chains: &[usize]) -> Result<Option<Put>, RegistrationError> {
+        let free = self.around(chains);
+        let registered: Vec<Result<Put, RegistrationError>> = (tried.par_iter())
+            .map(|put| Ok(self.put(self.registered(self.settled_around(&put.places, &free)?, &free)?)))
+            .collect();
+        let mut best: Option<Put> = None;
+        for put in registered {
+            let put = put?;
+            if put.energy < best.as_ref().map_or(now.energy - CLEARLY, |best| best.energy) {
+                best = Some(put);
+            }
+        }
+        Ok(best)
+    }
+
+    /// As [`Self::settled`], with all others held.
+    fn settled_around(&self, places: &[Point], free: &[usize]) -> Result<Vec<Point>, RegistrationError> {
+        let mut trust = vec![Matrix::identity() * (HELD * SETTLING.0); places.len()];
+        for &v in free {
+            trust[v] = Matrix::identity();
+        }
+        let targets = Targets { places, trust: &trust };
+        Ok(self.rigid.solve(places, &targets, SETTLING.0, SETTLING.1)?)
+    }
+
+    fn with_all_below(&self, chain: usize) -> Vec<usize> {
+        std::iter::once(chain).chain(self.limbs.below(chain)).collect()
+    }
+
+    /// Whether most of a chain is seen, and what is seen of it is what the pose shows there.
+    fn is_explained(&self, now: &Put, chain: usize) -> bool {
+        let own = &now.layers[chain];
+        let others = self.comparison.least(&now.layers, |other| other != chain);
+        let (mut sum, mut seen) = (0.0, 0usize);
+        for (own, other) in own.iter().zip(&others).filter(|(own, _)| **own != BARE) {
+            if own <= other {
+                sum += f64::from(*own);
+                seen += 1;
+            }
+        }
+        // The cells that it has at rest.
+        let side = self.pair.lattice.spacing / CELL_PX as f64;
+        let whole = 0.87 * self.limbs.vertices(chain).count() as f64 * side * side;
+        seen as f64 > SEEN_SHARE * whole && sum / (f64::from(STEPS_PER_UNIT) * seen as f64) < EXPLAINED
+    }
+
+    /// The figure with every chain where it explains the pose best.
+    pub(super) fn improved(&self, mut now: Put) -> Result<Put, RegistrationError> {
+        // What was tried since something last changed need not be tried again.
+        let mut tried_now: BTreeSet<[usize; 2]> = BTreeSet::new();
+        for _ in 0..ROUNDS {
+            let before = now.energy;
+            for chain in (1..self.limbs.chains.len()).rev() {
+                let moved = self.with_all_below(chain);
+                if !tried_now.insert([chain, chain]) || self.is_explained(&now, chain) {
+                    continue;
+                }
+                let mut tried = self.with_chain(chain, &now, &[], MADE);
+                tried.truncate(TRIED);
+                tried.retain(|put| !self.is_same(&now, &put.places, &moved));
+                if let Some(better) = self.better(&now, &tried, &moved)? {
+                    now = better;
+                    tried_now.clear();
+                }
+            }
+            for (first, second) in self.pairs(&now) {
+                let is_new = tried_now.insert([first, second]);
+                if !is_new || self.is_explained(&now, first) && self.is_explained(&now, second) {
+                    continue;
+                }
+                let moved = [first, second];
+                let mut tried = Vec::new();
+                for put in self.with_chain(first, &now, &[second], MADE_OF_PAIR[0]) {
+                    tried.extend(self.with_chain(second, &put, &[], MADE_OF_PAIR[1]));
+                }
+                tried.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+                tried.truncate(TRIED);
+                tried.retain(|put| !self.is_same(&now, &put.places, &moved));
+                if let Some(better) = self.better(&now, &tried, &moved)? {
+                    now = better;
+                    tried_now.clear();
+                }
+            }
+            if now.energy > before - CLEARLY {
+                break;
+            }
+        }
+        Ok(now)
+    }
+
+    /// Chains at ends that are near one another and about as large, both ways round.
+    fn pairs(&self, now: &Put) -> Vec<(usize, usize)> {
+        let count = self.limbs.chains.len();
+        let ends: Vec<usize> = (1..count).filter(|chain| self.limbs.below(*chain).is_empty()).collect();
+        let reach = PAIR_REACH * self.pair.lattice.spacing;
+        let is_pair = |a: usize, b: usize| {
+            let size = |chain: usize| self.limbs.vertices(chain).count() as f64;
+            let alike = size(a) < PAIR_SIZES * size(b) && size(b) < PAIR_SIZES * size(a);
+            let near = || {
+                self.limbs.vertices(a).any(|v| {
+                    let mut others = self.limbs.vertices(b);
+                    others.any(|w| (now.places[v] - now.places[w]).norm() < reach)
+                })
+            };
+            alike && near()
+        };
+        let mut pairs = Vec::new();
+        for &a in &ends {
+            pairs.extend(ends.iter().filter(|b| **b != a && is_pair(a, **b)).map(|b| (a, *b)));
+        }
+        pairs
+    }
+}
