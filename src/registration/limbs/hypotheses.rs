@@ -22,9 +22,9 @@ use crate::math::{Point, angle, point, rotation};
 use crate::registration::template::{MOST_DIFFERENCE, Template};
 
 /// States that go on: so many, and more for every band of the chain, since a long one can go wrong more often; at most.
-const WIDTH: usize = 100;
-const WIDTH_A_BAND: usize = 10;
-const MOST_WIDTH: usize = 400;
+const WIDTH: usize = 80;
+const WIDTH_A_BAND: usize = 8;
+const MOST_WIDTH: usize = 300;
 /// Directions of a first band.
 const TURNS: usize = 24;
 /// Bends between bands, in degrees.
@@ -39,8 +39,10 @@ const EXPLAINS: f64 = 0.35;
 const TURN_COST: f64 = 0.02;
 const BEND_COST: f64 = 0.05;
 /// What a vertex costs where its chain is already, and how many bands further back that is looked for.
-const AGAIN: f64 = 0.12;
+const AGAIN: f64 = 0.08;
 const AGAIN_BANDS: usize = 3;
+/// Nearer than this to one of these, in breadths, it is hidden by it.
+const UNDER: f64 = 0.9;
 /// Vertices of a band that are compared at most.
 const SAMPLES: usize = 6;
 /// Vertices of the parent, the nearest to the joint, that say how it is turned there.
@@ -66,6 +68,8 @@ struct State {
     cost: f64,
     /// The state of the band before.
     before: usize,
+    /// Whether an earlier band of the chain lies there, which may hide it.
+    is_under: bool,
 }
 
 /// What hypotheses are made from.
@@ -177,6 +181,7 @@ impl Search<'_> {
                         turn_rad: root_turn_rad + turned_rad,
                         cost: cost * length + TURN_COST * weight * turned_rad.abs(),
                         before: 0,
+                        is_under: false,
                     });
                 }
             }
@@ -202,7 +207,8 @@ impl Search<'_> {
         let mut states = Vec::with_capacity(last.len() * BENDS_DEG.len());
         for (number, state) in last.iter().enumerate() {
             let joint = state.joint + rotation(state.turn_rad) * step;
-            let again = AGAIN * weight * (1.5 - nearest_before(trail, number, joint) / breadth).clamp(0.0, 1.0);
+            let nearest = nearest_before(trail, number, joint);
+            let again = AGAIN * weight * (1.5 - nearest / breadth).clamp(0.0, 1.0);
             for bend_deg in BENDS_DEG {
                 let bend_rad = bend_deg.to_radians();
                 let bent = bend_rad.abs() / FRAC_PI_4;
@@ -212,6 +218,7 @@ impl Search<'_> {
                     turn_rad: state.turn_rad + bend_rad,
                     cost: state.cost + BEND_COST * weight * bent + again,
                     before: number,
+                    is_under: nearest < UNDER * breadth,
                 });
             }
         }
@@ -230,7 +237,7 @@ impl Search<'_> {
                 let place = state.joint + frame * (comparison.lattice.points[*v] - joint);
                 let differs = f64::from(self.patches.difference_at(comparison.pose, *v, place, &frame));
                 let cell = comparison.cell_at(place);
-                let seen = if rest.is_covered[cell] {
+                let seen = if state.is_under || rest.is_covered[cell] {
                     differs.min(HIDDEN)
                 } else {
                     differs

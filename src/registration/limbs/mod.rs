@@ -37,7 +37,7 @@ const COMPARED: usize = 2;
 const ORDERED: usize = 3;
 /// The patches of hypotheses: their radius, in figure units, and steps from middle to edge.
 const PATCH_RADIUS: f64 = 0.028;
-const PATCH_STEPS: f64 = 2.6;
+const PATCH_STEPS: f64 = 2.2;
 /// The levels that hypotheses are registered at.
 const REGISTERED: std::ops::Range<usize> = 1..3;
 /// Chains longer than this are divided into parts of about as many bands: an arm bends, and may lie in front of one thing and behind another.

@@ -31,7 +31,7 @@ const ROUNDS: usize = 3;
 const MADE: usize = 6;
 const TRIED: usize = 3;
 /// Of a pair: hypotheses of the first, and of the second for each of these.
-const MADE_OF_PAIR: [usize; 2] = [3, 2];
+const MADE_OF_PAIR: [usize; 2] = [2, 2];
 /// A hypothesis is the present one if its vertices are this near to it, in spacings.
 const SAME: f64 = 0.6;
 /// Vertices this near to what moves are registered with it, along the lattice, in spacings.
@@ -42,7 +42,7 @@ const HELD: f64 = 1000.0;
 const SETTLING: (f64, usize) = (6.0, 6);
 /// A chain is explained where at least this share of it is seen and differs by less than this in the mean.
 const SEEN_SHARE: f64 = 0.5;
-const EXPLAINED: f64 = 0.18;
+const EXPLAINED: f64 = 0.2;
 /// Chains are tried in pairs where they come this near to one another, in spacings, and neither has more than so many times the other's vertices.
 const PAIR_REACH: f64 = 3.0;
 const PAIR_SIZES: f64 = 2.5;
