@@ -45,7 +45,7 @@
 //!
 //! # Layered files
 //!
-//! PSD files hold the layers of a character already. A pose takes them by their path, the names of the groups that a layer is
+//! PSD, OpenRaster, Krita and Aseprite files hold the layers of a character already. A pose takes them by their path, the names of the groups that a layer is
 //! in and its own with `/` between them. An element may be a group: its layers, composed.
 //!
 //! ```toml
@@ -70,7 +70,7 @@
 //! - In a scene without layers `element` is one path; without it the drawing is everything that is visible in the file.
 //! - An element that is named is drawn although it is hidden, since poses are hidden in turns while they are drawn. In it, hidden layers stay hidden.
 //! - Masks, opacity and clipping count, those of the groups around an element too. Layers that are clipped by an element are drawn with it. Blend modes are
-//!   normal and multiply; another is drawn as normal, and a note says so.
+//!   normal and multiply; another is drawn as normal, and a note says so. Of an Aseprite file `frame = 2` names the frame.
 //! - Adjustment and fill layers, live effects, vector masks and vector layers are not drawn; text counts as the pixels that the file keeps of it. A note names each such layer.
 //! - Where two siblings have one name, the second from the back is called `name#2`.
 //! - Colours are taken as they are stored, in RGB or grey with 8 or 16 bits a channel; CMYK, Lab and floating point are refused.
@@ -81,6 +81,7 @@
 //! inbetween new hero hero.psd
 //! inbetween new hero stand.psd run.psd
 //! inbetween new hero hero.psd --layers part-groups
+//! inbetween new hero hero.aseprite
 //! ```
 //!
 //! | `--layers` | poses | parts | by itself |
@@ -92,7 +93,7 @@
 //!
 //! Parts of the same name correspond; a part that only some poses have appears and vanishes. If no two poses have a part in common, each pose is its whole drawing.
 //! Hidden parts, empty layers, and layers that are one colour all over the canvas are left out, and so are layers beside groups that are poses or parts. A single group around
-//! everything is passed through. Frames that repeat an earlier one are left out, and are called after their tags.
+//! everything is passed through. Poses of frames are called after their tags; frames that repeat an earlier one are left out.
 //!
 //! # Anchors
 //!

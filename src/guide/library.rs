@@ -132,7 +132,7 @@
 //! |---|---|
 //! | none of them | the core: outlines to mappings, weights, blended vertices and painted frames; no file is opened |
 //! | `images` | drawings in pixels, of files and of memory ([`read_bitmap`](crate::input::read_bitmap), [`read_pixels`](crate::input::read_pixels)) |
-//! | `layered` | layered files: PSD ([`LayeredFile`](crate::input::layered::LayeredFile)); takes `images` along |
+//! | `layered` | layered files: PSD, OpenRaster, Krita and Aseprite ([`LayeredFile`](crate::input::layered::LayeredFile)); takes `images` along |
 //! | `svg` | SVG drawings ([`read_svg`](crate::input::read_svg)); takes `images` along |
 //! | `export` | every writer ([`export`](crate::export)) |
 //! | `shape3d` | Shape by Example in space ([`shape3d`](crate::shape3d)), with `export` its files |

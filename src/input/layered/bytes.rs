@@ -74,4 +74,16 @@ impl<'a> Bytes<'a> {
     pub(super) fn be_u64(&mut self) -> Result<u64, LayeredError> {
         self.array().map(u64::from_be_bytes)
     }
+
+    pub(super) fn le_u16(&mut self) -> Result<u16, LayeredError> {
+        self.array().map(u16::from_le_bytes)
+    }
+
+    pub(super) fn le_i16(&mut self) -> Result<i16, LayeredError> {
+        self.array().map(i16::from_le_bytes)
+    }
+
+    pub(super) fn le_u32(&mut self) -> Result<u32, LayeredError> {
+        self.array().map(u32::from_le_bytes)
+    }
 }

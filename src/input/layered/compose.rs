@@ -167,6 +167,10 @@ impl<'f> Composer<'f, '_> {
                 self.notes.push(note);
             }
         }
+        // It would hide what it is to cut out.
+        if layer.notes.iter().any(|note| matches!(note, LayerNote::CutsOut { .. })) {
+            return Ok(());
+        }
         let opacity = opacity_of(opacity);
         match &layer.content {
             LayerContent::Pixels(None) => Ok(()),

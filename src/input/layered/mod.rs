@@ -1,12 +1,13 @@
-//! Layered drawings: PSD and PSB files.
+//! Layered drawings: PSD and PSB, OpenRaster, Krita and Aseprite files.
 //!
 //! Bytes -> [`LayeredFile`]: the tree of layers and groups, their names, places and settings; -> the pixels of the whole visible picture, or of one layer
 //! or group, on the file's canvas.
 //!
-//! Sources: "Adobe Photoshop File Formats Specification" (2019), with what other readers know of its gaps. Compositing: W3C "Compositing and Blending Level 1".
+//! Sources: "Adobe Photoshop File Formats Specification" (2019), with what other readers know of its gaps; the OpenRaster layer stack specification 0.0.6;
+//! Krita's `maindoc.xml` and tiles as Krita 5 writes them; "Aseprite File Format Specifications" of Aseprite 1.3. Compositing: W3C "Compositing and Blending Level 1".
 //!
 //! 1. The kind of file is told by its first bytes (module `kind`), whatever its name.
-//! 2. The tree is read; pixels stay where they are. Each format is a module (`psd`) that gives a tree and a [`PixelSource`].
+//! 2. The tree is read; pixels stay where they are. Each format is a module (`psd`, `ora`, `kra`, `ase`) that gives a tree and a [`PixelSource`].
 //! 3. What is asked for is composed from back to front in sixteen bits, one layer decoded at a time (modules `compose`, `raster`). Pixels that one layer alone shows
 //!    come out exactly as they are stored; 16-bit ones are rounded to eight.
 //!
@@ -18,11 +19,15 @@
 //! compared with a limit, or with the bytes that are there, before it is allocated. Limits: blend modes other than normal and multiply, live effects, adjustment
 //! layers and vector masks are not drawn, which a note says; colours are taken as they are stored, without colour profiles.
 
+mod archive;
+mod ase;
 mod bytes;
 mod compose;
 mod error;
 mod kind;
+mod kra;
 mod note;
+mod ora;
 mod psd;
 mod raster;
 mod tree;
@@ -94,16 +99,18 @@ impl<'a> LayeredFile<'a> {
     /// [`InputError::Layered`] if it is of no known kind, damaged, or has colours that are not read; [`InputError::TooManyPixels`] and
     /// [`InputError::NoPixels`] for its canvas.
     pub fn open(bytes: &'a [u8]) -> Result<Self, InputError> {
-        let file = match LayeredKind::of(bytes) {
+        match LayeredKind::of(bytes) {
             Some(LayeredKind::Photoshop) => psd::open(bytes),
+            Some(LayeredKind::OpenRaster) => ora::open(bytes),
+            Some(LayeredKind::Krita) => kra::open(bytes),
+            Some(LayeredKind::Aseprite) => ase::open(bytes),
             None if bytes.is_empty() => Err(InputError::EmptyFile),
             None => Err(LayeredError::Unsupported {
                 what: "this kind of file is".to_owned(),
-                remedy: "give a PSD file",
+                remedy: "give a PSD, OpenRaster, Krita or Aseprite file",
             }
             .into()),
-        };
-        file
+        }
     }
 
     /// Which kind of file it is.

@@ -18,6 +18,11 @@ pub enum LayerNote {
         /// Its name in the file.
         mode: String,
     },
+    /// A blend mode that takes away from what is behind it; the layer is not drawn.
+    CutsOut {
+        /// Its name in the file.
+        mode: String,
+    },
     /// A mask of curves without pixels.
     VectorMask,
     /// A mask whose edge is softened, or that is weakened, when the picture is shown.
@@ -42,6 +47,10 @@ impl std::fmt::Display for LayerNote {
             Self::BlendMode { mode } => write!(
                 f,
                 "its blend mode '{mode}' is not read, and it is drawn as a normal layer; merge it into what is behind it, or use 'normal' or 'multiply'"
+            ),
+            Self::CutsOut { mode } => write!(
+                f,
+                "it cuts out of what is behind it by its blend mode '{mode}', which is not read, and it is not drawn; turn it into a mask"
             ),
             Self::VectorMask => f.write_str("its vector mask does not cut it off; turn the mask into one of pixels"),
             Self::MaskSoftened => f.write_str("the feather and density of its mask do not count; apply the mask"),

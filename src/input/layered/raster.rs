@@ -78,6 +78,14 @@ impl Mask {
     }
 }
 
+/// Copies the part of a rectangle of pixels that is on the canvas. `left` and `top` say where the rectangle lies.
+pub(super) fn cropped<T: Copy>(pixels: &[T], width: usize, [left, top]: [i64; 2], area: Area) -> Vec<T> {
+    let offset = |place: usize, low: i64| usize::try_from(place as i64 - low).unwrap_or(0);
+    let (x, y) = (offset(area.left, left), offset(area.top, top));
+    let rows = pixels.chunks_exact(width.max(1)).skip(y).take(area.height());
+    rows.flat_map(|row| row[x..x + area.width()].iter().copied()).collect()
+}
+
 /// What 1 is in composed pixels. Eight bits of colour times eight of alpha fit, so that pixels of one layer come out as they went in.
 const ONE: u32 = u16::MAX as u32;
 
@@ -373,5 +381,7 @@ mod tests {
             bottom: 0,
         });
         assert_eq!((area.left, area.right, area.top, area.bottom), (0, 2, 1, 2));
+        let pixels: Vec<u8> = (0..27).collect();
+        assert_eq!(cropped(&pixels, 3, [-1, 1], area), [1, 2]);
     }
 }

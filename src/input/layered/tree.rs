@@ -7,6 +7,8 @@ use super::note::LayerNote;
 
 /// The most layers and groups that are read of a file.
 pub(super) const MOST_LAYERS: usize = 10_000;
+/// The most bytes of all paths together: a long name of a group is in the paths of all that is in it.
+const MOST_PATH_BYTES: usize = 16 << 20;
 /// The most groups that lie in one another: composing follows them.
 pub(super) const MOST_NESTED: usize = 64;
 
@@ -30,7 +32,7 @@ pub enum Clipping {
     None,
     /// By the next layer or group behind it that is not clipped itself, together with which it is drawn (clipping masks of PSD files).
     Base,
-    /// By all that is behind it in its group (Krita's inherited alpha, `svg:src-atop` of OpenRaster).
+    /// By all that is behind it in its group (Krita's inherited alpha, `svg:src-atop` of OpenRaster), and in one that is not isolated by what is behind the group, too.
     Behind,
 }
 
@@ -116,13 +118,29 @@ impl Layer {
 }
 
 /// Gives every layer its path.
-fn name_paths(layers: &mut [Layer]) {
-    name_in(layers, "", &mut BTreeSet::new());
+///
+/// # Errors
+/// If they are too long together.
+fn name_paths(layers: &mut [Layer]) -> Result<(), LayeredError> {
+    name_in(layers, "", &mut BTreeSet::new(), &mut 0)
 }
 
-fn name_in(layers: &mut [Layer], group: &str, taken: &mut BTreeSet<String>) {
+fn name_in(
+    layers: &mut [Layer],
+    group: &str,
+    taken: &mut BTreeSet<String>,
+    length: &mut usize,
+) -> Result<(), LayeredError> {
     let mut times: BTreeMap<String, usize> = BTreeMap::new();
     for layer in layers {
+        *length += group.len() + layer.name.len();
+        if *length > MOST_PATH_BYTES {
+            return Err(LayeredError::TooMany {
+                what: "letters in the names of its layers",
+                found: *length,
+                most: MOST_PATH_BYTES,
+            });
+        }
         let own = if group.is_empty() {
             layer.name.clone()
         } else {
@@ -143,9 +161,10 @@ fn name_in(layers: &mut [Layer], group: &str, taken: &mut BTreeSet<String>) {
         layer.name_start = if group.is_empty() { 0 } else { group.len() + 1 };
         layer.path = path;
         if let LayerContent::Group { children, .. } = &mut layer.content {
-            name_in(children, &layer.path, taken);
+            name_in(children, &layer.path, taken, length)?;
         }
     }
+    Ok(())
 }
 
 /// The way to the layer of this path: the places among their siblings of the groups that it is in, from the outermost, and its own.
@@ -221,13 +240,16 @@ impl TreeBuilder {
     }
 
     /// All layers. What is in groups that were never closed lies where these began.
-    pub(super) fn finish(mut self) -> Vec<Layer> {
+    ///
+    /// # Errors
+    /// If their names are too long together.
+    pub(super) fn finish(mut self) -> Result<Vec<Layer>, LayeredError> {
         while !self.open.is_empty() {
             let children = self.end();
             self.open.last_mut().unwrap_or(&mut self.roots).extend(children);
         }
-        name_paths(&mut self.roots);
-        self.roots
+        name_paths(&mut self.roots)?;
+        Ok(self.roots)
     }
 }
 
@@ -250,7 +272,7 @@ mod tests {
         };
         tree.push(group)?;
         tree.push(Layer::new("hat".to_owned()))?;
-        let layers = tree.finish();
+        let layers = tree.finish()?;
         assert_eq!(all_paths(&layers), ["hat", "run", "run/arm", "run/arm#2", "hat#2"]);
         assert_eq!(find_path(&layers, "run/arm#2"), Some(vec![1, 1]));
         assert_eq!(find_path(&layers, "arm"), None);
@@ -263,9 +285,26 @@ mod tests {
         assert!(tree.end().is_empty());
         tree.begin()?;
         tree.push(Layer::new("arm".to_owned()))?;
-        assert_eq!(all_paths(&tree.finish()), ["arm"]);
+        assert_eq!(all_paths(&tree.finish()?), ["arm"]);
         let mut deep = TreeBuilder::default();
         assert!((0..=MOST_NESTED).any(|_| deep.begin().is_err()));
+        Ok(())
+    }
+
+    #[test]
+    fn long_names_of_groups_do_not_multiply() -> Result<(), LayeredError> {
+        let mut tree = TreeBuilder::default();
+        tree.begin()?;
+        for _ in 0..1000 {
+            tree.push(Layer::new("arm".to_owned()))?;
+        }
+        let mut group = Layer::new("x".repeat(1 << 16));
+        group.content = LayerContent::Group {
+            children: tree.end(),
+            is_isolated: false,
+        };
+        tree.push(group)?;
+        assert!(matches!(tree.finish(), Err(LayeredError::TooMany { .. })));
         Ok(())
     }
 }

@@ -4,7 +4,8 @@ use inbetween::input::InputError;
 use inbetween::input::layered::{BlendMode, Clipping, Layer, LayeredError, LayeredFile};
 
 use super::art::{Content, Node, Patch, SIZE, ellipse, poses};
-use super::psd;
+use super::zip::{self, Packing};
+use super::{ase, kra, ora, psd};
 
 /// A picture of a file, pixel by pixel.
 pub(crate) fn picture(bytes: &[u8], element: Option<&str>) -> Vec<[u8; 4]> {
@@ -166,9 +167,24 @@ pub(crate) fn assert_composed(pixels: &[[u8; 4]], nodes: &[Node], what: &str) {
     }
 }
 
+/// Asserts that a file of the three poses gives the pixels of each layer.
+fn assert_single_layers(bytes: &[u8], what: &str) {
+    for group in &poses() {
+        let Content::Group(children) = &group.content else {
+            continue;
+        };
+        for child in children {
+            let Content::Pixels(patch) = &child.content else {
+                continue;
+            };
+            let path = format!("{}/{}", group.name, child.name);
+            assert_eq!(picture(bytes, Some(&path)), on_canvas(patch), "{path} {what}");
+        }
+    }
+}
+
 #[test]
 fn a_psd_file_gives_the_pixels_of_every_layer() {
-    let art = poses();
     for compression in 0..4 {
         for depth in [8, 16] {
             for is_large in [false, true] {
@@ -177,19 +193,7 @@ fn a_psd_file_gives_the_pixels_of_every_layer() {
                     compression,
                     is_large,
                 };
-                let bytes = psd::write(SIZE, &art, options);
-                for group in &art {
-                    let Content::Group(children) = &group.content else {
-                        continue;
-                    };
-                    for child in children {
-                        let Content::Pixels(patch) = &child.content else {
-                            continue;
-                        };
-                        let path = format!("{}/{}", group.name, child.name);
-                        assert_eq!(picture(&bytes, Some(&path)), on_canvas(patch), "{path} {options:?}");
-                    }
-                }
+                assert_single_layers(&psd::write(SIZE, &poses(), options), &format!("{options:?}"));
             }
         }
     }
@@ -289,4 +293,223 @@ fn an_element_that_is_not_there_is_refused_with_those_that_are() {
     assert_eq!((path.as_str(), known.len(), more), ("stand/leg", 9, 0));
     let message = file.picture(Some("stand/leg"), 0).expect_err("refused").to_string();
     assert!(message.contains("stand/body"), "{message}");
+}
+
+/// The face with all of its eyes.
+fn face_without_mask() -> Vec<Node> {
+    let mut art = face();
+    if let Content::Group(children) = &mut art[1].content {
+        children[3].mask = None;
+    }
+    art
+}
+
+/// The face in a group that lies directly on the paper, with nothing clipped: that would be so by the paper.
+fn passing_through(mut art: Vec<Node>) -> Vec<Node> {
+    art[1].passes_through = true;
+    if let Content::Group(children) = &mut art[1].content {
+        children[1].is_clipped = false;
+    }
+    art
+}
+
+#[test]
+fn an_openraster_file_is_read_and_composed() {
+    for packing in [Packing::Stored, Packing::Deflated] {
+        assert_single_layers(&ora::write(SIZE, &poses(), packing), &format!("{packing:?}"));
+    }
+    // The format has no masks; what is clipped is so by all that is behind it.
+    let art = face_without_mask();
+    let bytes = ora::write(SIZE, &art, Packing::Deflated);
+    assert_composed(&picture(&bytes, None), &art, "the whole");
+    let Content::Group(children) = &art[1].content else {
+        panic!("a group")
+    };
+    assert_composed(&picture(&bytes, Some("face/head")), &children[..1], "the head");
+    let file = LayeredFile::open(&bytes).expect("an OpenRaster file");
+    assert_eq!(file.layers()[1].children()[1].clipping, Clipping::Behind);
+    assert_eq!(file.layers()[1].children()[2].blend, BlendMode::Multiply);
+    let bytes = ora::write(SIZE, &passing_through(art), Packing::Deflated);
+    assert_composed(
+        &picture(&bytes, None),
+        &passing_through(face_without_mask()),
+        "passing through",
+    );
+}
+
+#[test]
+fn a_krita_file_is_read_and_composed() {
+    for depth in [8, 16] {
+        for is_compressed in [false, true] {
+            let options = kra::Options { depth, is_compressed };
+            assert_single_layers(&kra::write(SIZE, &poses(), options), &format!("{options:?}"));
+        }
+    }
+    let mut art = face();
+    // A mask of a layer, too.
+    let Content::Group(children) = &mut art[1].content else {
+        panic!("a group")
+    };
+    children[2].mask = Some(Patch::new([30, 10], [50, 40], |x, y| (x * 3 + y) as u8));
+    let bytes = kra::write(SIZE, &art, kra::Options::default());
+    assert_composed(&picture(&bytes, None), &art, "the whole");
+    let Content::Group(children) = &art[1].content else {
+        panic!("a group")
+    };
+    assert_composed(&picture(&bytes, Some("face/eyes")), &children[3..4], "the eyes");
+    let file = LayeredFile::open(&bytes).expect("a Krita file");
+    let paths = paths(file.layers());
+    assert_eq!(paths.last(), Some(&("face/sketch".to_owned(), false)));
+    let art = passing_through(art);
+    let bytes = kra::write(SIZE, &art, kra::Options::default());
+    assert_composed(&picture(&bytes, None), &art, "passing through");
+}
+
+#[test]
+fn an_aseprite_file_is_read_and_composed() {
+    for is_deflated in [false, true] {
+        let options = ase::Options { bits: 32, is_deflated };
+        assert_single_layers(&ase::write(SIZE, &poses(), options), &format!("{options:?}"));
+    }
+    // The format has no masks and no clipping, and a group is composed by itself where it is translucent.
+    let mut art = face();
+    art[1].opacity = 200;
+    let Content::Group(children) = &mut art[1].content else {
+        panic!("a group")
+    };
+    (children[1].is_clipped, children[3].mask) = (false, None);
+    for eyes in [false, true] {
+        let Content::Group(children) = &mut art[1].content else {
+            panic!("a group")
+        };
+        children[3].passes_through = eyes;
+        let bytes = ase::write(SIZE, &art, ase::Options::default());
+        assert_composed(&picture(&bytes, None), &art, "the whole");
+    }
+}
+
+#[test]
+fn aseprite_pixels_may_be_greys_or_indices() {
+    let grey = Patch::new([-3, 60], [40, 20], |x, y| {
+        let value = (x * 5 + y).rem_euclid(255) as u8 + 1;
+        if (x + y) % 3 == 0 {
+            [0; 4]
+        } else {
+            [value, value, value, 255]
+        }
+    });
+    for bits in [16, 8] {
+        for is_deflated in [false, true] {
+            let nodes = [Node::layer("grey", grey.clone())];
+            let bytes = ase::write(SIZE, &nodes, ase::Options { bits, is_deflated });
+            assert_eq!(picture(&bytes, Some("grey")), on_canvas(&grey), "{bits}");
+        }
+    }
+}
+
+#[test]
+fn an_aseprite_file_has_frames_tags_and_linked_drawings() {
+    let [one, two] = [[30.0, 30.0], [60.0, 40.0]].map(|centre| ellipse(centre, [14.0, 9.0], [200, 90, 30]));
+    let frames = vec![
+        vec![ase::Drawn::Patch(one.clone()), ase::Drawn::Nothing],
+        vec![ase::Drawn::Linked(0), ase::Drawn::Patch(two.clone())],
+        vec![ase::Drawn::Linked(1), ase::Drawn::Nothing],
+    ];
+    let bytes = ase::write_frames(SIZE, &["body", "arm"], &frames, &[("wait", 0, 0), ("go", 1, 9)]);
+    let file = LayeredFile::open(&bytes).expect("an Aseprite file");
+    assert_eq!(file.frame_count(), 3);
+    let tags: Vec<(&str, usize, usize)> = file
+        .tags()
+        .iter()
+        .map(|tag| (tag.name.as_str(), tag.first, tag.last))
+        .collect();
+    assert_eq!(tags, [("wait", 0, 0), ("go", 1, 2)]);
+    let shown = |element: &str, frame: usize| {
+        let picture = file.picture(Some(element), frame).map(|picture| picture.rgba);
+        picture.map(|rgba| {
+            rgba.chunks_exact(4)
+                .map(|p| [p[0], p[1], p[2], p[3]])
+                .collect::<Vec<_>>()
+        })
+    };
+    assert_eq!(shown("body", 0).expect("drawn"), on_canvas(&one));
+    assert_eq!(shown("body", 1).expect("drawn"), on_canvas(&one));
+    assert_eq!(shown("arm", 1).expect("drawn"), on_canvas(&two));
+    let empty = LayeredError::EmptyLayer {
+        layer: "arm".to_owned(),
+        frame: Some(0),
+    };
+    assert!(matches!(shown("arm", 0), Err(InputError::Layered(error)) if error == empty));
+    // A link to a link, which the program does not write, and a frame that is not there.
+    assert!(matches!(
+        shown("body", 2),
+        Err(InputError::Layered(LayeredError::DamagedLayer { .. }))
+    ));
+    assert!(matches!(
+        shown("body", 3),
+        Err(InputError::NoSuchFrame { frame: 3, count: 3 })
+    ));
+}
+
+/// The bytes with every occurrence of some replaced by as many others.
+fn replaced(bytes: &[u8], from: &[u8], to: &[u8]) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    let places: Vec<usize> = (0..bytes.len()).filter(|&k| bytes[k..].starts_with(from)).collect();
+    assert!(!places.is_empty() && from.len() == to.len());
+    for place in places {
+        bytes[place..place + to.len()].copy_from_slice(to);
+    }
+    bytes
+}
+
+#[test]
+fn what_is_not_kept_is_told_with_the_path_of_its_layer() {
+    let told = |bytes: &[u8]| {
+        let file = LayeredFile::open(bytes).expect("a layered file");
+        let picture = file.picture(None, 0).expect("a picture");
+        let notes = picture.notes.into_iter();
+        (
+            picture.rgba,
+            notes
+                .map(|(layer, note)| format!("{layer}: {note}"))
+                .collect::<Vec<String>>(),
+        )
+    };
+    let mut plain = face();
+    let Content::Group(children) = &mut plain[1].content else {
+        panic!("a group")
+    };
+    children[2].is_multiplied = false;
+    let options = psd::Options::default();
+    let whole = psd::write(SIZE, &face(), options);
+    assert!(told(&whole).1.is_empty());
+    let (pixels, notes) = told(&replaced(&whole, b"8BIMmul ", b"8BIMover"));
+    assert!(
+        notes.len() == 1 && notes[0].starts_with("face/shade: its blend mode 'over'"),
+        "{notes:?}"
+    );
+    assert_eq!(pixels, told(&psd::write(SIZE, &plain, options)).0);
+    let stored = ora::write(SIZE, &face(), Packing::Stored);
+    let mut files = ora::files(SIZE, &face());
+    files[1].1 = replaced(&files[1].1, b"svg:multiply", b"svg:dst-out ");
+    files[1].1 = String::from_utf8_lossy(&files[1].1)
+        .replace("svg:dst-out \"", "svg:dst-out\"")
+        .into_bytes();
+    let (pixels, notes) = told(&zip::write(&files, Packing::Stored));
+    assert!(
+        notes.len() == 1 && notes[0].starts_with("face/shade: it cuts out"),
+        "{notes:?}"
+    );
+    assert_ne!(pixels, told(&stored).0);
+    let mut files = kra::files(SIZE, &face(), kra::Options::default());
+    let text = String::from_utf8_lossy(&files[1].1).replace(
+        "nodetype=\"paintlayer\" name=\"shade\"",
+        "nodetype=\"shapelayer\" name=\"shade\"",
+    );
+    files[1].1 = text.into_bytes();
+    let (_, notes) = told(&zip::write(&files, Packing::Deflated));
+    assert!(
+        notes.len() == 1 && notes[0].starts_with("face/shade: it is a vector layer"),
+        "{notes:?}"
+    );
 }

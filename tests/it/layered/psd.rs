@@ -36,7 +36,7 @@ pub(crate) fn write([width, height]: [u32; 2], nodes: &[Node], options: Options)
     let mut list = count.to_be_bytes().to_vec();
     list.append(&mut records);
     list.append(&mut channels);
-    while list.len() % 4 != 0 {
+    while !list.len().is_multiple_of(4) {
         list.push(0);
     }
     let mut section = Vec::new();

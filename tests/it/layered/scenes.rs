@@ -5,7 +5,7 @@ use inbetween::scene::Scene;
 use super::art::{Content, Node, Patch, SIZE, ellipse, poses};
 use super::picture::png;
 use super::pixels::on_canvas;
-use super::psd;
+use super::{ase, psd};
 use crate::workshop::Workshop;
 
 /// The names of a scene's poses, and of its layers with the poses that have them.
@@ -220,4 +220,42 @@ fn flat_layers_are_poses_and_a_pose_may_be_a_group() {
     assert!(refusal.contains("no layers"), "{refusal}");
     let refusal = workshop.fails(&["new", "mixed", "one.png", "hero.psd", "--layers", "pose-groups"], 1);
     assert!(refusal.contains("not all drawings"), "{refusal}");
+}
+
+#[test]
+fn frames_are_poses_and_layers_their_parts() {
+    let drawn = |shift: f64| {
+        let body = ellipse([40.0 + shift, 45.0], [20.0, 18.0 - shift], [200, 40, 40]);
+        let arm = ellipse([50.0 + shift, 30.0 - shift], [18.0, 8.0], [40, 90, 200]);
+        vec![ase::Drawn::Patch(body), ase::Drawn::Patch(arm)]
+    };
+    let frames = vec![
+        drawn(0.0),
+        drawn(6.0),
+        vec![ase::Drawn::Linked(0), ase::Drawn::Linked(0)],
+        vec![ase::Drawn::Nothing, ase::Drawn::Nothing],
+        drawn(3.0),
+    ];
+    let workshop = Workshop::new();
+    let tags = [("wait", 0, 0), ("go", 1, 4)];
+    workshop.file(
+        "hero.aseprite",
+        &ase::write_frames(SIZE, &["body", "arm"], &frames, &tags),
+    );
+    let output = workshop.run(&["new", "hero", "hero.aseprite"]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{message}");
+    assert!(
+        message.contains("3 of 5 frames are poses; 1 are empty, 1 repeat"),
+        "{message}"
+    );
+    let (names, layers) = shape(&workshop, "hero/scene.toml");
+    assert_eq!(names, ["wait", "go-1", "go-4"]);
+    assert_eq!(layers, with_all(&["body", "arm"], &[0, 1, 2]));
+    let text = std::fs::read_to_string(workshop.path("hero/scene.toml")).expect("text");
+    assert!(
+        text.contains("frame = 4\nelement = { body = \"body\", arm = \"arm\" }"),
+        "{text}"
+    );
+    workshop.succeeds(&["frame", "hero/scene.toml", "--weights", "0,0,1", "-o", "frame.png"]);
 }

@@ -215,7 +215,7 @@ fn flat<'a>(source: &mut Photoshop<'a>, mut file: Bytes<'a>, header: &Header) ->
         alpha: None,
     });
     tree.push(layer)?;
-    Ok(tree.finish())
+    tree.finish()
 }
 
 /// Records, from back to front, as a tree.
@@ -239,8 +239,15 @@ fn tree_of<'a>(
             }
             Role::Layer => {
                 let mut layer = layer_of(source, &record);
-                let has_none = layer.notes.iter().any(|note| matches!(note, LayerNote::NoPixels { .. }));
-                let number = if has_none { None } else { painted_of(source, &record, colours) };
+                let has_none = layer
+                    .notes
+                    .iter()
+                    .any(|note| matches!(note, LayerNote::NoPixels { .. }));
+                let number = if has_none {
+                    None
+                } else {
+                    painted_of(source, &record, colours)
+                };
                 if number.is_none() && !has_none {
                     layer.notes.extend(record.unpainted());
                 }
@@ -249,7 +256,7 @@ fn tree_of<'a>(
             }
         }
     }
-    Ok(tree.finish())
+    tree.finish()
 }
 
 /// Everything of a record but what is in it.

@@ -314,12 +314,19 @@ fn read_section(block: &mut Bytes<'_>, record: &mut Record<'_>) -> Result<(), La
     Ok(())
 }
 
-/// A name that old programs write alone, in an encoding that depends on the system; letters without accents are the same in all.
+/// The letters of the Macintosh's encoding from 128 on.
+const MAC_ROMAN: &str = "ÄÅÇÉÑÖÜáàâäãåçéèêëíìîïñóòôöõúùûü†°¢£§•¶ß®©™´¨≠ÆØ∞±≤≥¥µ∂∑∏π∫ªºΩæø¿¡¬√ƒ≈∆«»…\u{a0}ÀÃÕŒœ–—“”‘’÷◊ÿŸ⁄€‹›ﬁﬂ‡·‚„‰ÂÊÁËÈÍÎÏÌÓÔ\u{f8ff}ÒÚÛÙıˆ˜¯˘˙˚¸˝˛ˇ";
+
+/// A name that old programs and other libraries write alone: in UTF-8 or, as the program began, in the Macintosh's encoding.
 fn short_name(bytes: &[u8]) -> String {
-    match std::str::from_utf8(bytes) {
-        Ok(name) => name.to_owned(),
-        Err(_) => bytes.iter().copied().map(char::from).collect(),
+    if let Ok(name) = std::str::from_utf8(bytes) {
+        return name.to_owned();
     }
+    let letter = |byte: &u8| match byte {
+        0..128 => Some(char::from(*byte)),
+        128.. => MAC_ROMAN.chars().nth(usize::from(*byte) - 128),
+    };
+    bytes.iter().filter_map(letter).collect()
 }
 
 /// A name of UTF-16 units after their number.
@@ -332,4 +339,17 @@ fn unicode(block: &mut Bytes<'_>) -> Result<String, LayeredError> {
         .collect();
     // Some programs end it as C does.
     Ok(String::from_utf16_lossy(&units).trim_end_matches('\0').to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_names_have_their_accents() {
+        assert_eq!(MAC_ROMAN.chars().count(), 128);
+        assert_eq!(short_name(b"\x8arm"), "ärm");
+        assert_eq!(short_name("ärm".as_bytes()), "ärm");
+        assert_eq!(short_name(&[0xff]), "ˇ");
+    }
 }
