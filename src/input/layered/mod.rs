@@ -7,7 +7,7 @@
 //! Krita's `maindoc.xml` and tiles as Krita 5 writes them; "Aseprite File Format Specifications" of Aseprite 1.3. Compositing: W3C "Compositing and Blending Level 1".
 //!
 //! 1. The kind of file is told by its first bytes (module `kind`), whatever its name.
-//! 2. The tree is read; pixels stay where they are. Each format is a module (`psd`, `ora`, `kra`, `ase`) that gives a tree and a [`PixelSource`].
+//! 2. The tree is read; pixels stay where they are. Each format is a module (`psd`, `ora`, `kra`, `ase`) that gives a tree and a `PixelSource`.
 //! 3. What is asked for is composed from back to front in sixteen bits, one layer decoded at a time (modules `compose`, `raster`). Pixels that one layer alone shows
 //!    come out exactly as they are stored; 16-bit ones are rounded to eight.
 //!
@@ -15,7 +15,8 @@
 //! is hidden stays hidden. Opacity and masks of its own and of the groups around it count, and so does what it is clipped by; layers that are clipped
 //! by it are drawn with it. Its own blend mode has nothing to act on.
 //!
-//! Memory: the file, one layer, and one sheet of eight bytes a pixel for each group that has to be composed by itself, within [`MOST_SHEETS`]. Every size that a file claims is
+//! Memory: the file, one layer, and one sheet of eight bytes a pixel for each group that has to be composed by itself, together at most as much as three of the
+//! largest picture take (`MOST_SHEETS`). Every size that a file claims is
 //! compared with a limit, or with the bytes that are there, before it is allocated. Limits: blend modes other than normal and multiply, live effects, adjustment
 //! layers and vector masks are not drawn, which a note says; colours are taken as they are stored, without colour profiles.
 
