@@ -89,6 +89,7 @@ fn begin(drawings: &[PathBuf], cells: Option<Grid>, verbosity: Verbosity) -> any
         dir: dir.clone(),
         poses: drawings.to_vec(),
         cells,
+        layers: None,
         force: false,
     })?;
     verbosity.notes(&plan.notes);
@@ -103,7 +104,7 @@ fn begin(drawings: &[PathBuf], cells: Option<Grid>, verbosity: Verbosity) -> any
         copies.push(DrawingCopy::new(original, target));
     }
     let file = dir.join("scene.toml");
-    PendingFile::write_whole(&file, scene_text(&plan.poses).as_bytes())?;
+    PendingFile::write_whole(&file, scene_text(&plan.layers, &plan.poses).as_bytes())?;
     verbosity.note(&format!(
         "note: the scene is in {} until it is saved in the page",
         dir.display()

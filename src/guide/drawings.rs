@@ -2,7 +2,8 @@
 //!
 //! # Files
 //!
-//! A pose is read from a PNG, JPEG, WebP, GIF, BMP or TIFF picture, or from an SVG drawing. A picture has at most 16,384 columns
+//! A pose is read from a PNG, JPEG, WebP, GIF, BMP or TIFF picture, from an SVG drawing, or from a layered file (PSD, OpenRaster, Krita and Aseprite; see
+//! [`layers`](super::layers)). A picture has at most 16,384 columns
 //! and rows and 2²⁶ pixels in all. A drawing lies in the folder of its scene file or below it; `new` and `add` copy those that do not.
 //! What one drawing shows is one character. Several pictures in one file are several poses:
 //!

@@ -8,7 +8,7 @@
 //!
 //! # A scene with layers
 //!
-//! Layers are listed from back to front. Each pose says where its layers are drawn: either one SVG file, with an element a layer, or a file a layer.
+//! Layers are listed from back to front. Each pose says where its layers are drawn: either one SVG or layered file, with an element a layer, or a file a layer.
 //! A pose may lack some of them, but not all.
 //!
 //! ```toml
@@ -39,9 +39,61 @@
 //!
 //! - All layers share the pose space, the weights and the animation. A layer is blended among the poses that have it.
 //! - Every landmark says which `layer` it is on.
-//! - The drawings of all layers of a pose have the same coordinates: pictures of one size, or one SVG file.
+//! - The drawings of all layers of a pose have the same coordinates: pictures of one size, or one file.
 //! - A place under `keep` or `drop` is one of all drawings of the pose: it names the loose parts that are there, on whatever layer. The largest part of
 //!   a drawing is never dropped.
+//!
+//! # Layered files
+//!
+//! PSD, OpenRaster, Krita and Aseprite files hold the layers of a character already. A pose takes them by their path, the names of the groups that a layer is
+//! in and its own with `/` between them. An element may be a group: its layers, composed.
+//!
+//! ```toml
+//! [[layer]]
+//! name = "body"
+//!
+//! [[layer]]
+//! name = "arm"
+//!
+//! [[pose]]
+//! name = "rest"
+//! source = "hero.psd"
+//! element = { body = "rest/body", arm = "rest/arms/left" }
+//!
+//! [[pose]]
+//! name = "wave"
+//! source = "hero.psd"
+//! element = { body = "wave/body", arm = "wave/arms/left" }
+//! ```
+//!
+//! - Coordinates are pixels of the file's canvas, for all its layers alike. What lies outside of the canvas is not seen.
+//! - In a scene without layers `element` is one path; without it the drawing is everything that is visible in the file.
+//! - An element that is named is drawn although it is hidden, since poses are hidden in turns while they are drawn. In it, hidden layers stay hidden.
+//! - Masks, opacity and clipping count, those of the groups around an element too. Layers that are clipped by an element are drawn with it. Blend modes are
+//!   normal and multiply; another is drawn as normal, and a note says so. Of an Aseprite file `frame = 2` names the frame.
+//! - Adjustment and fill layers, live effects, vector masks and vector layers are not drawn; text counts as the pixels that the file keeps of it. A note names each such layer.
+//! - Where two siblings have one name, the second from the back is called `name#2`.
+//! - Colours are taken as they are stored, in RGB or grey with 8 or 16 bits a channel; CMYK, Lab and floating point are refused.
+//!
+//! `new` makes a scene of such a file, and says what it took for what:
+//!
+//! ```text
+//! inbetween new hero hero.psd
+//! inbetween new hero stand.psd run.psd
+//! inbetween new hero hero.psd --layers part-groups
+//! inbetween new hero hero.aseprite
+//! ```
+//!
+//! | `--layers` | poses | parts | by itself |
+//! |---|---|---|---|
+//! | `pose-groups` | the outermost groups | what is in them | of one file with several groups |
+//! | `part-groups` | layers of one name in the groups | the outermost groups | the same, where every group shows exactly one of several layers |
+//! | `part-layers` | the files, or frames | the outermost layers and groups | of several files, and of a file with frames |
+//! | `pose-layers` | the outermost layers and groups | none | of any other file: a flat list of layers |
+//!
+//! Parts of the same name correspond; a part that only some poses have appears and vanishes. If no two poses have a part in common, each pose is its whole drawing.
+//! Hidden parts, empty layers, and layers that are one colour all over the canvas are left out, and so are layers beside groups that are poses or parts. A single group around
+//! everything is passed through. Poses of frames are called after their tags; frames that repeat an earlier one are left out.
 //!
 //! # Anchors
 //!

@@ -132,11 +132,12 @@
 //! |---|---|
 //! | none of them | the core: outlines to mappings, weights, blended vertices and painted frames; no file is opened |
 //! | `images` | drawings in pixels, of files and of memory ([`read_bitmap`](crate::input::read_bitmap), [`read_pixels`](crate::input::read_pixels)) |
+//! | `layered` | layered files: PSD, OpenRaster, Krita and Aseprite ([`LayeredFile`](crate::input::layered::LayeredFile)); takes `images` along |
 //! | `svg` | SVG drawings ([`read_svg`](crate::input::read_svg)); takes `images` along |
 //! | `export` | every writer ([`export`](crate::export)) |
 //! | `shape3d` | Shape by Example in space ([`shape3d`](crate::shape3d)), with `export` its files |
-//! | `scene` | scene files ([`scene`](crate::scene)); takes all of these along |
-//! | `cli` | the command; takes `scene` along |
+//! | `scene` | scene files ([`scene`](crate::scene)); takes all of these but `layered` along |
+//! | `cli` | the command; takes `scene` and `layered` along |
 //! | `explorer` | `inbetween explore`; takes `cli` along |
 //! | `kurbo`, `tiny_skia`, `lyon` | conversions to and from the paths of these crates ([`interop`](crate::interop)) |
 //! | `lyon` with `export` | frames of curves as triangles for engines, too |

@@ -67,7 +67,7 @@
 //! [[pose]]
 //! name = "smile"
 //! source = "smile.svg"
-//! element = "head"                # everything: the SVG element whose outline is meant
+//! element = "head"                # everything: the SVG element whose outline is meant, or the path of a layer in a layered file
 //! at = [0.0, -1.0]
 //!
 //! [[pose]]
@@ -116,7 +116,7 @@
 //!
 //! [[pose]]
 //! name = "stand"
-//! source = { body = "body.png", arm = "arm.png" }     # a file a layer, or one SVG file and `element`
+//! source = { body = "body.png", arm = "arm.png" }     # a file a layer, or one SVG or layered file and `element`
 //! order = ["arm", "body"]         # as listed above: the layers of this pose from back to front
 //!
 //! [[pose]]

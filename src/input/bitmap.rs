@@ -63,6 +63,8 @@ pub struct BitmapOptions {
     pub parts: PartOptions,
     /// Which picture of the file is meant. Default: the only or first one.
     pub picture: PictureChoice,
+    /// The path of the layer or group of a layered file that is meant, such as `group/layer`. Default: everything that is visible.
+    pub element: Option<String>,
 }
 
 impl Default for BitmapOptions {
@@ -75,6 +77,7 @@ impl Default for BitmapOptions {
             holes: HoleRule::Keep,
             parts: PartOptions::default(),
             picture: PictureChoice::default(),
+            element: None,
         }
     }
 }
@@ -99,7 +102,10 @@ pub fn open_bitmap(path: &Path, options: &BitmapOptions) -> Result<Drawing, Inpu
 /// [`InputError`] if the bytes are no image, the image is too large, or nothing is drawn in it.
 pub fn read_bitmap(bytes: &[u8], options: &BitmapOptions) -> Result<Drawing, InputError> {
     check_options(options)?;
-    outlined(decode_chosen(bytes, options.picture)?, options)
+    outlined(
+        decode_chosen(bytes, options.picture, options.element.as_deref())?,
+        options,
+    )
 }
 
 /// How many pictures the bytes of an image file hold: more than one if it is animated, of which at most a hundred are counted.

@@ -27,6 +27,8 @@ pub(super) struct Decoded {
     pub(super) fidelity: Fidelity,
     /// How many pictures come after it.
     pub(super) later_frames: usize,
+    /// What of its layers is not kept.
+    pub(super) layer_notes: Vec<InputNote>,
 }
 
 impl Decoded {
@@ -36,6 +38,7 @@ impl Decoded {
             image,
             fidelity: Fidelity::Exact,
             later_frames: 0,
+            layer_notes: Vec::new(),
         }
     }
 
@@ -44,24 +47,32 @@ impl Decoded {
         let left_out = (self.later_frames > 0).then_some(InputNote::FramesLeftOut {
             count: self.later_frames,
         });
-        left_out.into_iter().collect()
+        left_out.into_iter().chain(self.layer_notes.iter().cloned()).collect()
     }
 }
 
 /// How many columns and rows the picture that is meant in the bytes of an image file has when it stands upright.
 pub(super) fn upright_size(bytes: &[u8], choice: PictureChoice) -> Result<[u32; 2], InputError> {
+    let size = whole_size(bytes)?;
+    let PictureChoice::Cell { at, of } = choice else {
+        return Ok(size);
+    };
+    let [_, _, width, height] = cell_of(size, at, of)?;
+    Ok([width, height])
+}
+
+fn whole_size(bytes: &[u8]) -> Result<[u32; 2], InputError> {
+    #[cfg(feature = "layered")]
+    if super::layered::LayeredKind::of(bytes).is_some() {
+        return super::layered::canvas_size(bytes);
+    }
     let (mut decoder, _) = decoder_of(bytes)?;
     let (width, height) = decoder.dimensions();
     let is_turned = matches!(
         decoder.orientation().map_err(refused)?,
         Orientation::Rotate90 | Orientation::Rotate270 | Orientation::Rotate90FlipH | Orientation::Rotate270FlipH
     );
-    let size = if is_turned { [height, width] } else { [width, height] };
-    let PictureChoice::Cell { at, of } = choice else {
-        return Ok(size);
-    };
-    let [_, _, width, height] = cell_of(size, at, of)?;
-    Ok([width, height])
+    Ok(if is_turned { [height, width] } else { [width, height] })
 }
 
 /// Which picture of a file is meant.
@@ -81,13 +92,13 @@ pub enum PictureChoice {
     },
 }
 
-/// The picture that is meant in the bytes of an image file.
-pub(super) fn decode_chosen(bytes: &[u8], choice: PictureChoice) -> Result<Decoded, InputError> {
+/// The picture that is meant in the bytes of an image file, of a layered one that of the element of this path.
+pub(super) fn decode_chosen(bytes: &[u8], choice: PictureChoice, element: Option<&str>) -> Result<Decoded, InputError> {
     match choice {
-        PictureChoice::Only => decode(bytes),
-        PictureChoice::Frame(frame) => frame_of(bytes, frame),
+        PictureChoice::Only => decode_frame(bytes, None, element),
+        PictureChoice::Frame(frame) => decode_frame(bytes, Some(frame), element),
         PictureChoice::Cell { at, of } => {
-            let sheet = decode(bytes)?;
+            let sheet = decode_frame(bytes, None, element)?;
             let [left, top, width, height] = cell_of([sheet.image.width(), sheet.image.height()], at, of)?;
             Ok(Decoded {
                 image: image::imageops::crop_imm(&sheet.image, left, top, width, height).to_image(),
@@ -95,6 +106,23 @@ pub(super) fn decode_chosen(bytes: &[u8], choice: PictureChoice) -> Result<Decod
                 ..sheet
             })
         }
+    }
+}
+
+/// A frame, or the first picture, of a layered or other image file.
+fn decode_frame(bytes: &[u8], frame: Option<usize>, element: Option<&str>) -> Result<Decoded, InputError> {
+    #[cfg(feature = "layered")]
+    if super::layered::LayeredKind::of(bytes).is_some() {
+        return super::layered::decode(bytes, element, frame);
+    }
+    if let Some(element) = element {
+        return Err(InputError::NoLayers {
+            element: element.to_owned(),
+        });
+    }
+    match frame {
+        None => decode(bytes),
+        Some(frame) => frame_of(bytes, frame),
     }
 }
 
@@ -120,6 +148,10 @@ fn cell_of(size: [u32; 2], at: [usize; 2], of: [usize; 2]) -> Result<[u32; 4], I
 
 /// How many pictures the bytes of an image file hold, as far as they are whole: one of anything that is not animated.
 pub(super) fn count_frames(bytes: &[u8]) -> Result<usize, InputError> {
+    #[cfg(feature = "layered")]
+    if super::layered::LayeredKind::of(bytes).is_some() {
+        return Ok(super::layered::LayeredFile::open(bytes)?.frame_count());
+    }
     let (_, format) = decoder_of(bytes)?;
     Ok(1 + later_frames(bytes, format))
 }
@@ -155,9 +187,8 @@ fn frame_of(bytes: &[u8], frame: usize) -> Result<Decoded, InputError> {
         .ok_or_else(refusal)?
         .map_err(refused)?;
     Ok(Decoded {
-        image: found.into_buffer(),
         fidelity: fidelity(bytes, format),
-        later_frames: 0,
+        ..Decoded::exact(found.into_buffer())
     })
 }
 
@@ -168,9 +199,9 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, InputError> {
     let mut image = DynamicImage::from_decoder(decoder).map_err(refused)?;
     image.apply_orientation(orientation);
     Ok(Decoded {
-        image: image.into_rgba8(),
         fidelity: fidelity(bytes, format),
         later_frames: later_frames(bytes, format),
+        ..Decoded::exact(image.into_rgba8())
     })
 }
 
@@ -214,7 +245,7 @@ pub(super) fn image_of_pixels(size: [usize; 2], rgba: &[u8]) -> Result<RgbaImage
     RgbaImage::from_raw(width, height, rgba.to_vec()).ok_or(refusal)
 }
 
-fn check_size(width: u32, height: u32) -> Result<(), InputError> {
+pub(super) fn check_size(width: u32, height: u32) -> Result<(), InputError> {
     if width == 0 || height == 0 {
         return Err(InputError::NoPixels { width, height });
     }

@@ -112,6 +112,14 @@ pub enum InputNote {
         /// Which element, and what about it.
         reason: String,
     },
+    /// What of a layer of a layered file is not kept.
+    #[cfg(feature = "layered")]
+    Layer {
+        /// The path of the layer.
+        layer: String,
+        /// What.
+        note: super::layered::LayerNote,
+    },
     /// Translucent groups whose elements overlap: as curves, each element is translucent by itself.
     TranslucentGroups {
         /// How many.
@@ -222,6 +230,8 @@ impl std::fmt::Display for InputNote {
             Self::NotCurves { reason } => {
                 write!(f, "it is drawn from pixels, not as curves, because {reason}")
             }
+            #[cfg(feature = "layered")]
+            Self::Layer { layer, note } => write!(f, "layer '{layer}': {note}"),
             Self::TranslucentGroups { count } => write!(
                 f,
                 "{count} translucent groups have elements that overlap, which show through one another when drawn as curves; \

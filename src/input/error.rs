@@ -42,6 +42,18 @@ pub enum InputError {
         /// How many there are.
         count: usize,
     },
+    /// An element was asked for of a picture that has no layers.
+    #[error(
+        "`element = \"{element}\"` names a layer, but this picture has no layers; remove `element`, or give a file with layers"
+    )]
+    NoLayers {
+        /// What was asked for.
+        element: String,
+    },
+    /// A layered file cannot be used.
+    #[cfg(feature = "layered")]
+    #[error(transparent)]
+    Layered(#[from] super::layered::LayeredError),
     /// The sheet has fewer cells.
     #[error(
         "there is no cell [{}, {}] in a sheet of {} x {} cells and {} x {} pixels; cells are counted from [0, 0]",

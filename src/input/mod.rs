@@ -54,6 +54,10 @@ mod runs;
 #[cfg(feature = "images")]
 mod sheet;
 
+// Layers.
+#[cfg(feature = "layered")]
+pub mod layered;
+
 // Curves.
 #[cfg(feature = "svg")]
 mod art_parts;

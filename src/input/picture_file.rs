@@ -26,15 +26,15 @@ impl Picture {
 /// # Errors
 /// [`InputError`] if it is no image of a known kind and a sensible size.
 pub fn read_picture(bytes: &[u8]) -> Result<Picture, InputError> {
-    read_chosen_picture(bytes, PictureChoice::Only)
+    read_chosen_picture(bytes, PictureChoice::Only, None)
 }
 
-/// One of the pictures in the bytes of an image file as it is, nothing taken out.
+/// One of the pictures in the bytes of an image file as it is, nothing taken out; of a layered file that of the layer or group whose path is `element`.
 ///
 /// # Errors
-/// As [`read_picture`], and if there is no such picture.
-pub fn read_chosen_picture(bytes: &[u8], choice: PictureChoice) -> Result<Picture, InputError> {
-    let image = decode_chosen(bytes, choice)?.image;
+/// As [`read_picture`], and if there is no such picture or element.
+pub fn read_chosen_picture(bytes: &[u8], choice: PictureChoice, element: Option<&str>) -> Result<Picture, InputError> {
+    let image = decode_chosen(bytes, choice, element)?.image;
     Ok(Picture {
         width: image.width() as usize,
         height: image.height() as usize,

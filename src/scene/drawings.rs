@@ -47,6 +47,7 @@ pub(super) fn read_drawing(scene: &Scene, layer: Option<&str>, pose: usize) -> R
                 holes,
                 parts: said.parts.clone(),
                 picture: said.picture,
+                element: said.element.clone(),
             };
             DrawnPose::new(read_bitmap(bytes, &options)?)
         };
@@ -78,7 +79,7 @@ pub(super) fn read_sheet(scene: &Scene, layer: Option<&str>, pose: usize) -> Res
         if is_svg(path) {
             read_svg_page(bytes)
         } else {
-            read_chosen_picture(bytes, said.picture)
+            read_chosen_picture(bytes, said.picture, said.element.as_deref())
         }
     })
 }

@@ -26,7 +26,7 @@ mod workbench;
 pub use build_error::SceneBuildError;
 pub use error::{SceneError, SceneProblem};
 pub use layers::{LayerAnchor, SceneLayer};
-pub use new::{NewPose, scene_text};
+pub use new::{NewElement, NewPose, scene_text};
 pub use newcomer::Newcomer;
 pub use separated::{Separated, SeparatedDrawing, SeparatedLayer};
 pub use settings::{

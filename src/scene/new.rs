@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::input::PictureChoice;
 
-/// A drawing for a new scene.
+/// A pose of a new scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewPose {
     /// Its name.
@@ -13,13 +13,32 @@ pub struct NewPose {
     pub source: String,
     /// Which picture of its source it is.
     pub picture: PictureChoice,
+    /// What of its source it is.
+    pub element: NewElement,
     /// Its place in the pose space; all poses of a scene have one, or none.
     pub at: Option<[f64; 2]>,
 }
 
-/// A scene file for `poses`, with the keys an artist is likely to want next as comments.
+/// What of its source a pose of a new scene is.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum NewElement {
+    /// All that is seen.
+    #[default]
+    Whole,
+    /// A layer or group of a layered file, by its path.
+    One(String),
+    /// An element for each of the scene's layers that the pose has.
+    Layers {
+        /// The names of the layers and the paths of their elements.
+        elements: Vec<(String, String)>,
+        /// The layers from back to front, where that is not the scene's own order.
+        order: Option<Vec<String>>,
+    },
+}
+
+/// A scene file for `poses` with `layers`, from back to front, or without any, and with the keys an artist is likely to want next as comments.
 #[must_use]
-pub fn scene_text(poses: &[NewPose]) -> String {
+pub fn scene_text(layers: &[String], poses: &[NewPose]) -> String {
     let mut text = String::from(
         "version = 1\n\
          # `at` is a pose's place: poses that are alike lie near one another. Move them as you like, x and y meaning whatever\n\
@@ -32,9 +51,13 @@ pub fn scene_text(poses: &[NewPose]) -> String {
     if let Some([columns, rows]) = grid {
         let _ = write!(text, "\n[input]\ncells = [{columns}, {rows}]\n");
     }
+    // A TOML value knows its own quoting.
+    let quoted = |s: &str| toml::Value::String(s.to_owned()).to_string();
+    for (place, layer) in layers.iter().enumerate() {
+        text.push_str(if place == 0 { "\n# From back to front.\n" } else { "\n" });
+        let _ = writeln!(text, "[[layer]]\nname = {}", quoted(layer));
+    }
     for pose in poses {
-        // A TOML value knows its own quoting.
-        let quoted = |s: &str| toml::Value::String(s.to_owned()).to_string();
         let _ = write!(
             text,
             "\n[[pose]]\nname = {}\nsource = {}\n",
@@ -50,6 +73,21 @@ pub fn scene_text(poses: &[NewPose]) -> String {
                 let _ = writeln!(text, "cell = [{column}, {row}]");
             }
         }
+        match &pose.element {
+            NewElement::Whole => {}
+            NewElement::One(element) => {
+                let _ = writeln!(text, "element = {}", quoted(element));
+            }
+            NewElement::Layers { elements, order } => {
+                let listed = elements.iter();
+                let listed = listed.map(|(layer, path)| format!("{} = {}", toml_key(layer), quoted(path)));
+                let _ = writeln!(text, "element = {{ {} }}", listed.collect::<Vec<_>>().join(", "));
+                if let Some(order) = order {
+                    let listed: Vec<String> = order.iter().map(|layer| quoted(layer)).collect();
+                    let _ = writeln!(text, "order = [{}]", listed.join(", "));
+                }
+            }
+        }
         text.push_str(&match pose.at {
             Some([x, y]) => format!("at = [{x:?}, {y:?}]\n"),
             None => "# at = [0.0, 0.0]\n".to_owned(),
@@ -59,6 +97,9 @@ pub fn scene_text(poses: &[NewPose]) -> String {
         "\n# A point that corresponds, where the automatic match errs: source pixels or SVG units, a pose may lack it.\n\
          # [[landmark]]\n# name = \"nose\"\n",
     );
+    if let Some(layer) = layers.last() {
+        let _ = writeln!(text, "# layer = {}", quoted(layer));
+    }
     let _ = writeln!(
         text,
         "# at = {{ {} }}",

@@ -14,6 +14,7 @@ mod guide;
 mod holes;
 mod import_law;
 mod inner_lines;
+mod layered;
 mod layers;
 mod long_work;
 mod mapping_report;

@@ -416,9 +416,10 @@ fn a_new_scene_reads_back() {
             name: name.to_owned(),
             source: source.to_owned(),
             picture: crate::input::PictureChoice::Only,
+            element: super::super::NewElement::Whole,
             at: None,
         });
-    let text = super::super::scene_text(&poses);
+    let text = super::super::scene_text(&[], &poses);
     let scene = parse(&text).expect("a scene");
     assert_eq!(scene.names(), ["a", "say \"hi\"", "c"]);
     assert_eq!(scene.layout, Layout::Automatic);
@@ -426,13 +427,44 @@ fn a_new_scene_reads_back() {
         at: Some([0.25, -f64::from(pose.source.as_bytes()[0])]),
         ..pose
     });
-    let scene = parse(&super::super::scene_text(&placed)).expect("a scene");
+    let scene = parse(&super::super::scene_text(&[], &placed)).expect("a scene");
     assert_eq!((scene.layout, &scene.poses[1].at), (Layout::Given, &vec![0.25, -98.0]));
     // The commented landmark is valid once the comment signs go.
     let open = text
         .replace("# [[landmark]]\n# name", "[[landmark]]\nname")
         .replace("# at = {", "at = {");
     assert_eq!(parse(&open).expect("a scene").landmarks.len(), 1);
+}
+
+#[test]
+fn a_new_scene_with_layers_reads_back() {
+    use super::super::{NewElement, NewPose};
+    let layers = ["body".to_owned(), "left arm".to_owned()];
+    let pose = |name: &str, layers: &[&str], order: Option<[&str; 2]>| NewPose {
+        name: name.to_owned(),
+        source: "hero.psd".to_owned(),
+        picture: crate::input::PictureChoice::Frame(1),
+        element: NewElement::Layers {
+            elements: layers
+                .iter()
+                .map(|layer| ((*layer).to_owned(), format!("{name}/{layer}")))
+                .collect(),
+            order: order.map(|order| order.map(str::to_owned).to_vec()),
+        },
+        at: None,
+    };
+    let poses = [
+        pose("stand", &["body", "left arm"], Some(["left arm", "body"])),
+        pose("run", &["left arm"], None),
+    ];
+    let scene = parse(&super::super::scene_text(&layers, &poses)).expect("a scene");
+    assert_eq!(
+        (&scene.layers[0].poses, &scene.layers[1].poses),
+        (&vec![0], &vec![0, 1])
+    );
+    let (_, drawing) = scene.layers[1].scene.drawing_of(1).expect("a drawing");
+    assert_eq!(drawing.element.as_deref(), Some("run/left arm"));
+    assert_eq!(scene.poses[0].draw_order, [1, 0]);
 }
 
 mod layers;

@@ -1,4 +1,21 @@
-//! A frame allocates nothing: counted, not promised.
+//! What is allocated, counted and not promised: nothing by a frame, little by damaged layered files.
+
+#[path = "../it/layered/art.rs"]
+mod art;
+#[path = "../it/layered/ase.rs"]
+mod ase;
+#[path = "../it/layered/kra.rs"]
+mod kra;
+#[path = "../it/layered/ora.rs"]
+mod ora;
+#[path = "../it/layered/picture.rs"]
+mod picture;
+#[path = "../it/layered/psd.rs"]
+mod psd;
+#[path = "../it/layered/zip.rs"]
+mod zip;
+
+mod damaged_layers;
 
 use inbetween::blend::{Anchor, BlendOptions, RigidBlend, SoftAnchor, Stretch};
 use inbetween::math::{Point, Point3};
