@@ -24,7 +24,8 @@ mod refine;
 mod simplify;
 mod triangulate;
 
-pub use refine::{Guide, RefineError, RefineOptions, RefineReport, follow, refine, refine_guided};
+pub(crate) use refine::follow;
+pub use refine::{Guide, RefineError, RefineOptions, RefineReport, refine, refine_guided};
 pub(crate) use simplify::SimplifiedAlone;
 pub use simplify::{RingPoint, Simplification, Simplified, SimplifyError, SimplifyOptions, SimplifyReport, simplify};
 pub use triangulate::{

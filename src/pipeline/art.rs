@@ -76,7 +76,8 @@ impl LayerArt {
                     sampling,
                 };
                 let shown = drawing_of.clone();
-                if overlaps {
+                // Pixel art has no soft edges to be painted over one another.
+                if overlaps && sampling == Sampling::Smooth {
                     let drawn: Vec<(&Drawing, usize)> = (drawings.iter().map(Arc::as_ref))
                         .zip(drawn_on.iter().copied())
                         .collect();

@@ -20,7 +20,8 @@ use crate::mesh::PointLocator;
 use crate::mesh::validity::{self, ValidityError};
 use crate::outline::{Outline, OutlineError};
 use crate::pose::{
-    CarriedOutline, DragReport, HandleDeformation, HandleError, Mapping, Matching, MeshQuality, PoseSet,
+    CarriedOutline, DragReport, HandleDeformation, HandleError, Mapping, Matching, MeshQuality, OverlappingPose,
+    PoseSet,
 };
 
 /// How large a layer is in a pose that lacks it: far below a pixel, and far above rounding.
@@ -126,9 +127,16 @@ pub(super) fn with_copies(
         .collect();
     let (positions, outlines): (Vec<_>, Vec<_>) = poses.into_iter().map(|pose| (pose.positions, pose.outline)).unzip();
     let mut overlaps = drawn.overlaps;
-    for overlapping in &mut overlaps.poses {
-        overlapping.pose = order[overlapping.pose];
-    }
+    // A copy of a pose that lies over itself does so, too.
+    let known = std::mem::take(&mut overlaps.poses);
+    let of_copy = |(pose, of): (usize, usize)| {
+        let own = known.iter().find(|own| order[own.pose] == of)?;
+        Some(OverlappingPose {
+            pose,
+            depth: own.depth.clone(),
+        })
+    };
+    overlaps.poses = layer.originals().into_iter().enumerate().filter_map(of_copy).collect();
     let whole = Mapping {
         overlaps,
         poses: PoseSet::new(
@@ -202,9 +210,21 @@ fn deformed(
     let drag = HandleDeformation::new(topology, &base.positions, &from)
         .and_then(|deformation| deformation.drag(&to, &mut deformation.scratch(), &mut positions))
         .map_err(|error: HandleError| refusal(error.to_string()))?;
-    validity::check_embedding(topology, &positions, &drawn.rings).map_err(|error| refusal(overlap(&error, &to)))?;
-    let carried = CarriedOutline::new(topology, &base.positions, &positions, &base.outline)
-        .map_err(|error| refusal(error.to_string()))?;
+    let lies_over = drawn.overlaps.depth(drawing).is_some();
+    let is_valid = if lies_over {
+        validity::check_immersion(topology, &positions, &drawn.rings)
+    } else {
+        validity::check_embedding(topology, &positions, &drawn.rings)
+    };
+    is_valid.map_err(|error| refusal(overlap(&error, &to)))?;
+    // Of one that lies over itself the outline is what is seen of the drawing.
+    let carried = if lies_over {
+        None
+    } else {
+        let carried = CarriedOutline::new(topology, &base.positions, &positions, &base.outline);
+        Some(carried.map_err(|error| refusal(error.to_string()))?)
+    };
+    let parameter = |t: f64| carried.as_ref().map_or(t, |carried| carried.parameter(0, t));
     let locator = PointLocator::new(topology.triangles(), &base.positions);
     let carry = |p: &Point| -> Point { locator.bind(*p).map_or(*p, |bound| bound.at(&positions)) };
     let landmarks = base
@@ -220,15 +240,15 @@ fn deformed(
         reflection_ratio: 1.0,
         salient: (base.matched.salient.iter())
             .map(|salient| SalientPoint {
-                parameter: carried.parameter(0, salient.parameter),
+                parameter: parameter(salient.parameter),
                 ..*salient
             })
             .collect(),
         landmarks: base.matched.landmarks.clone(),
     };
     let whole = Pose {
-        parameters: base.parameters.iter().map(|&t| carried.parameter(0, t)).collect(),
-        outline: carried.outline,
+        parameters: base.parameters.iter().map(|&t| parameter(t)).collect(),
+        outline: carried.map_or_else(|| base.outline.clone(), |carried| carried.outline),
         positions,
         landmarks,
         matched,

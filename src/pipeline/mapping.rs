@@ -96,8 +96,15 @@ fn map_drawn(
     let landmarks = landmarks::sorted(layer, drawings)?;
 
     let known = Known::of(&landmarks);
-    if let Some(overlapping) = overlapping::found(layer, drawings, &known)? {
-        return map_overlapping(layer, drawings, &overlapping, notes, begins);
+    let mut found = overlapping::found(layer, drawings, &known)?;
+    while let Some(overlapping) = found {
+        let mapped = map_overlapping(layer, drawings, &overlapping, notes.clone(), begins)?;
+        let uncovered = overlapping.uncovered(&mapped.0);
+        if uncovered.is_empty() {
+            return Ok(mapped);
+        }
+        // What was found in these poses does not cover them: they are mapped as ever.
+        found = overlapping.without(&uncovered);
     }
     let boundaries = match before.filter(|before| before.serve(layer, &known)) {
         Some(same) => Arc::clone(same),
@@ -213,6 +220,15 @@ fn map_overlapping(
     let kept = overlapping.open();
     let mut open = layer.only(&kept);
     open.overlaps = OverlapSearch::Refuse;
+    // What is marked in the other poses alone has no place here.
+    let is_marked = |at: &[Option<Point>]| at.iter().any(Option::is_some);
+    let marked: Vec<usize> = (0..open.landmarks.len())
+        .filter(|k| is_marked(&open.landmarks[*k].at))
+        .collect();
+    let lines: Vec<usize> = (0..open.paths.len())
+        .filter(|k| open.paths[*k].at.iter().any(Option::is_some))
+        .collect();
+    open = open.with_landmarks(&marked, &lines);
     // What lies over something shows its own edge there: the mesh is held closer to it.
     open.mesh.simplify.tolerance *= OVERLAPPING_TOLERANCE;
     let open_drawings: Vec<Arc<Drawing>> = kept.iter().map(|pose| Arc::clone(&drawings[*pose])).collect();
@@ -245,17 +261,26 @@ fn map_overlapping(
             }
         };
         let at = (0..names.len()).map(carried).collect();
-        let given = |pose: usize| {
-            kept.iter()
-                .position(|kept| *kept == pose)
-                .is_some_and(|number| landmark.given[number])
+        let name = &landmark.name;
+        let is_given = |pose: usize| {
+            let point = layer
+                .landmarks
+                .iter()
+                .any(|own| own.name == *name && own.at[pose].is_some());
+            point
+                || layer
+                    .paths
+                    .iter()
+                    .any(|own| own.name == *name && own.at[pose].is_some())
         };
-        (landmark.given, landmark.at) = ((0..names.len()).map(given).collect(), at);
+        let given = (0..names.len()).map(is_given).collect();
+        (landmark.given, landmark.at) = (given, at);
     }
     let report = MappingReport {
         notes,
         matching: overlapping.matched.outer.clone(),
         explained,
+        holes: overlapping.matched.holes.clone(),
         landmarks,
         quality: MeshQuality::of(&whole.poses),
         ..of_open

@@ -21,11 +21,12 @@ use super::spec::{LayerSpec, OverlapSearch};
 use crate::compatible::{Guide, follow};
 use crate::input::Drawing;
 use crate::matching::{Correspondence, MatchOptions};
-use crate::math::{Point, point, rotation};
+use crate::math::{Point, for_each_cell, point, rotation};
 use crate::mesh::validity;
 use crate::outline::{ArcLength, Outline};
 use crate::pose::{HandleDeformation, Mapping, Matching, OverlappingPose, Overlaps, PoseSet};
 use crate::registration::{FoundLimbs, Overlap};
+use crate::render::coverage::Coverage;
 
 /// An outline is clearly shorter, for its area, than the longest if it has less than this share of its length: drawn anew, apart, it varies by 4 %.
 const SHORTER: f64 = 0.95;
@@ -33,6 +34,10 @@ const SHORTER: f64 = 0.95;
 const LEAST_OVERLAP: f64 = 0.005;
 /// And if what is not explained falls at least to this share of what it was.
 const EXPLAINED_SHARE: f64 = 0.95;
+/// The mesh and the pose's figure have at least this much in common, of what either has: a limb that was not found leaves its place bare.
+const LEAST_COVER: f64 = 0.935;
+/// Cells along the diagonal that this is counted on.
+const COVER_CELLS: f64 = 500.0;
 /// Where hardly anything lies over anything, what is not explained has to fall further.
 const TOUCHING_SHARE: f64 = 0.85;
 /// Handles that bend the mesh are this far apart, as a fraction of the diagonal; where they contradict one another, further by this factor, so many times.
@@ -90,21 +95,23 @@ pub(super) fn found(
     let Ok((matched, mut guide)) = matched else {
         return Ok(None);
     };
+    guide.registration.find_limbs();
     let sought: Vec<Option<FoundLimbs>> = (shorter.par_iter())
         .map(|&pose| {
             if !appearances[pose].is_drawn() {
-                return Ok(None);
+                return None;
             }
-            (guide.registration.seek_limbs(pose)).map_err(|error| PipelineError::stage(&names, Some(pose), error))
+            // Where nothing can be compared, the ordinary way says why.
+            guide.registration.seek_limbs(pose).ok().flatten()
         })
-        .collect::<Result<_, _>>()?;
+        .collect();
     let mut poses: Vec<Option<Overlap>> = vec![None; drawings.len()];
     for (pose, found) in shorter.into_iter().zip(sought) {
         let lies_over = |found: &FoundLimbs| {
             let [before, after] = found.overlap.unexplained;
-            let is_clearly_better = after <= EXPLAINED_SHARE * before;
+            let is_clearly_better = after < EXPLAINED_SHARE * before;
             // Parts that touch close a ring, or part the outline otherwise, without lying over one another.
-            is_clearly_better && (found.overlap.share >= LEAST_OVERLAP || after <= TOUCHING_SHARE * before)
+            is_clearly_better && (found.overlap.share >= LEAST_OVERLAP || after < TOUCHING_SHARE * before)
         };
         if let Some(found) = found.filter(lies_over) {
             guide.registration.place(pose, &found);
@@ -144,10 +151,14 @@ impl Overlapping {
     pub(super) fn completed(
         &self,
         names: &[String],
-        outlines: Vec<Outline>,
+        mut outlines: Vec<Outline>,
         open: &Mapping,
     ) -> Result<Mapping, PipelineError> {
         let kept = self.open();
+        // Their holes are in the order of the mesh's rings.
+        for (pose, outline) in kept.iter().zip(&open.outlines) {
+            outlines[*pose] = outline.clone();
+        }
         let refusal = |pose: usize, message: String| PipelineError::stage(names, Some(pose), message);
         let template = kept.iter().position(|pose| *pose == self.template).unwrap_or(0);
         let topology = open.poses.topology();
@@ -175,7 +186,8 @@ impl Overlapping {
             let of_template = row[template];
             let parameter = |pose: usize| match kept.iter().position(|kept| *kept == pose) {
                 Some(number) => row[number],
-                None => self.matched.correspondences[0].carry(self.template, pose, of_template),
+                // Part of the boundary is hidden: the template's stands for it.
+                None => of_template,
             };
             (0..names.len()).map(parameter).collect()
         });
@@ -192,6 +204,27 @@ impl Overlapping {
                 outer,
             },
         })
+    }
+
+    /// The poses whose figure is not what `mapping` covers of it: what was found there is not enough.
+    pub(super) fn uncovered(&self, mapping: &Mapping) -> Vec<usize> {
+        let is_uncovered = |pose: &usize| {
+            self.poses[*pose].is_some()
+                && cover(
+                    mapping.poses.topology().triangles(),
+                    &mapping.poses.positions()[*pose],
+                    &mapping.outlines[*pose],
+                ) < LEAST_COVER
+        };
+        (0..self.poses.len()).filter(is_uncovered).collect()
+    }
+
+    /// The same without some poses, which are then mapped as ever; `None` if that leaves none.
+    pub(super) fn without(mut self, poses: &[usize]) -> Option<Self> {
+        for pose in poses {
+            self.poses[*pose] = None;
+        }
+        self.poses.iter().any(Option::is_some).then_some(self)
     }
 
     /// Depths and limbs of triangles, which are at `reference` in the template.
@@ -236,12 +269,48 @@ impl Overlapping {
         Overlaps {
             poses,
             limbs: names,
-            triangle_limb: part_of
-                .iter()
-                .map(|part| number_of.get(*part).copied().flatten())
-                .collect(),
+            triangle_limb: if number_of.iter().all(Option::is_none) {
+                Vec::new()
+            } else {
+                part_of
+                    .iter()
+                    .map(|part| number_of.get(*part).copied().flatten())
+                    .collect()
+            },
         }
     }
+}
+
+/// What the union of some triangles and the inside of an outline, less its openings, have in common, of what either has.
+fn cover(triangles: &[[usize; 3]], positions: &[Point], outline: &Outline) -> f64 {
+    let points = positions.iter().chain(outline.outer().points());
+    let Some((low, high)) = point::bounding_box(points) else {
+        return 0.0;
+    };
+    let side = (high - low).norm() / COVER_CELLS;
+    if side.is_nan() || side <= 0.0 {
+        return 0.0;
+    }
+    // Casts saturate; both are at most the diagonal's.
+    let size = [high.x - low.x, high.y - low.y].map(|length| (length / side) as usize + 1);
+    let place = |p: Point| (p - low) / side;
+    let mut is_covered = vec![false; size[0] * size[1]];
+    for triangle in triangles {
+        for_each_cell(triangle.map(|v| place(positions[v])), size, |cell, _| {
+            is_covered[cell] = true
+        });
+    }
+    let rings = outline.rings().iter().chain(outline.openings());
+    let rings: Vec<Vec<Point>> = rings
+        .map(|ring| ring.points().iter().map(|p| place(*p)).collect())
+        .collect();
+    let figure = Coverage::of(rings.iter().map(Vec::as_slice), size[0], size[1]);
+    let (mut both, mut either) = (0usize, 0usize);
+    for (is_covered, area) in is_covered.into_iter().zip(figure.areas()) {
+        both += usize::from(is_covered && *area >= 0.5);
+        either += usize::from(is_covered || *area >= 0.5);
+    }
+    both as f64 / either.max(1) as f64
 }
 
 /// The mesh bent to where its vertices are wanted, as far as can be without inverting a triangle.

@@ -2,6 +2,8 @@
 //!
 //! Format `inbetween.mapping`, version 1: poses with their full-resolution outlines and their #vertices positions, the
 //! triangles, the boundary rings, the number of Steiner points and the matching as rows of arc-length parameters.
+//! A pose that lies over itself is named in `immersed`, with a depth a triangle, and its parameters in the matching are `null`; `limbs` and `triangle_limb`
+//! name the parts that move.
 //! Numbers are printed so that they read back to the same `f64`.
 //!
 //! [`Mapping::from_json`] checks shapes and counts, so that what it returns can be used; whether the mesh is a valid

@@ -1,4 +1,8 @@
 //! Where a mapping lies over itself.
+//!
+//! A pose *lies over itself*, or *overlaps*, where parts of its figure lie over one another; its mesh is then an immersion (`immersed` in the file), no embedding. Poses that do
+//! not are *open*. Parts have whole *ranks* from back to front; the depth of a triangle is the rank of its part and a fraction that only tells triangles of one part from one
+//! another.
 
 use crate::math::{Point, predicate};
 use crate::mesh::{Topology, geometry};

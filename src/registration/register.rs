@@ -179,18 +179,25 @@ impl Registration {
                 places: theirs.places.clone(),
                 frames: theirs.frames.clone(),
                 trusts: theirs.trusts.clone(),
+                residuals: theirs.residuals.clone(),
                 ..own.as_ref().clone()
             });
         }
     }
 
-    /// The limbs of the reference sought one by one in `pose`, where the figure may lie over itself.
+    /// Finds the limbs of the reference, before they are sought in several poses at once: what is made once for all must not be made by a task among them.
+    pub(crate) fn find_limbs(&self) {
+        let _ = self.searched.limbs();
+    }
+
+    /// The limbs of the reference, which [`Self::find_limbs`] has found, sought one by one in `pose`, where the figure may lie over itself.
     ///
     /// # Errors
     /// [`RegistrationError`] as of [`register`].
     pub(crate) fn seek_limbs(&self, pose: usize) -> Result<Option<FoundLimbs>, RegistrationError> {
         let searched = &self.searched;
-        let Some((limbs, registered)) = searched.limbs().zip(self.poses.get(pose).and_then(Option::as_ref)) else {
+        let limbs = searched.limbs.get().and_then(Option::as_ref);
+        let Some((limbs, registered)) = limbs.zip(self.poses.get(pose).and_then(Option::as_ref)) else {
             return Ok(None);
         };
         let pair = Pair::new(

@@ -38,7 +38,7 @@ pub use drawing::{
 };
 pub use error::PictureError;
 pub use frame::Frame;
-pub use overlap::OverlapPainter;
+pub(crate) use overlap::OverlapPainter;
 pub use painter::{PaintOptions, Painter, PoseTexture, Sampling};
 pub use puppet::{Puppet, PuppetFrame, PuppetLayer, PuppetLayerFrame, PuppetPose, PuppetTexture};
 pub use silhouette::Silhouette;

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use crate::matching::Correspondence;
 use crate::math::{Point, point, wrapped};
 use crate::mesh::{MeshPoint, PointLocator, SmoothCarrier, SmoothPoints};
-use crate::outline::{ArcLength, Ring};
+use crate::outline::{ArcLength, Outline, Ring};
 use crate::pose::Mapping;
 
 /// Rows nearer than this to their predecessor on every pose are left out, as a fraction of the perimeter: a fifth of
@@ -59,29 +59,31 @@ impl Silhouette {
             .into_par_iter()
             .map(|own| SmoothCarrier::new(topology, mapping.poses.positions(), own))
             .collect();
-        let ring_count = mapping.outlines.iter().map(|o| o.rings().len()).min().unwrap_or(0);
+        // Where part of the boundary is hidden, it is where the mesh carries that of the reference.
+        let seen: Vec<usize> = (0..mapping.poses.len())
+            .map(|pose| match mapping.overlaps.depth(pose) {
+                Some(_) => mapping.matching.reference,
+                None => pose,
+            })
+            .collect();
+        let outlines: Vec<&Outline> = seen.iter().filter_map(|pose| mapping.outlines.get(*pose)).collect();
+        let ring_count = outlines.iter().map(|o| o.rings().len()).min().unwrap_or(0);
         let mut rings = Vec::new();
         for ring in 0..ring_count {
-            let curves: Vec<&Ring> = mapping.outlines.iter().map(|o| &o.rings()[ring]).collect();
+            let curves: Vec<&Ring> = outlines.iter().map(|o| &o.rings()[ring]).collect();
             let by_mesh;
             let correspondence = if ring == 0 {
                 &mapping.matching.outer
             } else {
-                by_mesh = correspondence_by_mesh(mapping, ring, &curves);
+                by_mesh = correspondence_by_mesh(mapping, ring, &curves, &seen);
                 &by_mesh
             };
             let measured: Vec<ArcLength> = curves.iter().map(|curve| ArcLength::new(curve)).collect();
             let rows = row_coordinates(correspondence, &measured);
-            // Where part of the boundary is hidden, it is where the mesh carries that of the reference.
-            let seen = |pose: usize| match mapping.overlaps.depth(pose) {
-                Some(_) => mapping.matching.reference,
-                None => pose,
-            };
             let anchors: Option<Vec<Vec<MeshPoint>>> = (0..locators.len())
                 .into_par_iter()
                 .map(|pose| {
-                    let pose = seen(pose);
-                    let (locator, curve) = (&locators[pose], &measured[pose]);
+                    let (locator, curve) = (&locators[seen[pose]], &measured[pose]);
                     locator.bind_along(rows.iter().map(|&row| curve.at(correspondence.parameter(pose, row))))
                 })
                 .collect();
@@ -171,15 +173,15 @@ fn row_coordinates(correspondence: &Correspondence, curves: &[ArcLength]) -> Vec
 
 /// The correspondence of hole `ring` that the vertices of the mesh's boundary state: each at the nearest point of each
 /// pose's curve, as long as the order is kept.
-fn correspondence_by_mesh(mapping: &Mapping, ring: usize, curves: &[&Ring]) -> Correspondence {
+fn correspondence_by_mesh(mapping: &Mapping, ring: usize, curves: &[&Ring], seen: &[usize]) -> Correspondence {
     let measured: Vec<ArcLength> = curves.iter().map(|curve| ArcLength::new(curve)).collect();
     let vertices = mapping.rings.get(ring).map(Vec::as_slice).unwrap_or_default();
     let mut rows: Vec<Vec<f64>> = Vec::new();
     for &vertex in vertices {
         let row: Vec<f64> = measured
             .iter()
-            .zip(mapping.poses.positions())
-            .map(|(curve, positions)| curve.nearest(positions[vertex]).0)
+            .zip(seen)
+            .map(|(curve, pose)| curve.nearest(mapping.poses.positions()[*pose][vertex]).0)
             .collect();
         // After the row before, and not beyond the first: less than a turn from it, on every pose.
         let ahead =
@@ -202,7 +204,6 @@ fn correspondence_by_mesh(mapping: &Mapping, ring: usize, curves: &[&Ring]) -> C
 mod tests {
     use super::*;
     use crate::mesh::Topology;
-    use crate::outline::Outline;
     use crate::pose::{Matching, PoseSet};
 
     fn ring(points: &[[f64; 2]]) -> Ring {

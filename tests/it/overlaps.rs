@@ -103,6 +103,7 @@ fn figure(arm: Arm) -> Drawing {
                 pixel[3] = 255;
             }
         };
+        paint(mark((p - elbow).norm() - 5.0), WHITE);
         paint(capsule(p, hand, hand, 16.0), HAND);
     }
     read_pixels(SIZE, &pixels, &BitmapOptions::default()).expect("a figure")

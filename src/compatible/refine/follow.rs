@@ -18,7 +18,12 @@ const MOST_TRUST: f64 = 4.0;
 /// The vertices of a mesh, which is at `reference` in another pose, moved from `beginning`, where every triangle is positive, towards `wanted`: a place and how
 /// sure it is, 1 where it is clear. All are #vertices.
 #[must_use]
-pub fn follow(topology: &Topology, reference: &[Point], beginning: Vec<Point>, wanted: &[(Point, f64)]) -> Vec<Point> {
+pub(crate) fn follow(
+    topology: &Topology,
+    reference: &[Point],
+    beginning: Vec<Point>,
+    wanted: &[(Point, f64)],
+) -> Vec<Point> {
     let mut mesh = EditableMesh::new(vec![reference.to_vec(), beginning], topology.triangles());
     let stars = Stars::of_all(&mesh);
     let target = |&(place, trust): &(Point, f64)| {

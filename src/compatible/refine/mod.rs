@@ -30,7 +30,7 @@ mod widen;
 #[cfg(test)]
 mod tests;
 
-pub use follow::follow;
+pub(crate) use follow::follow;
 pub use guide::Guide;
 
 use super::CompatibleMesh;

@@ -49,6 +49,8 @@ const MOST_SCALE: f64 = 1.4;
 const TELLING_SHARE: f64 = 0.2;
 /// Beginnings that leave less energy than this need no other.
 const GOOD: f64 = 0.2;
+/// Of two beginnings, one that leaves this many times what the other leaves is not followed.
+const FAR_WORSE: f64 = 1.5;
 /// One that leaves more than this explains nothing.
 const HOPELESS: f64 = 0.45;
 
@@ -145,9 +147,9 @@ impl Limbs {
         let image = ByteImage::new(&pair.pose.blurred(LEVELS[COMPARED].deviation_px), 0);
         let chains = (&self.articulation.chain_of[..], self.articulation.chains.len());
         let comparison = Comparison::new(lattice, chains, &self.compared, &image);
-        let given = comparison.energy(&comparison.layers(places));
+        let before = comparison.energy(&comparison.layers(places));
         // A beginning that explains nothing says nothing of the size, either: drawings of a character are as large as one another in their own units.
-        let scale = if given > HOPELESS {
+        let scale = if before > HOPELESS {
             (pair.pose.scale() / pair.reference.scale()).clamp(1.0 / MOST_SCALE, MOST_SCALE)
         } else {
             scale(lattice, places, residuals)
@@ -170,15 +172,26 @@ impl Limbs {
             levels: &levels,
         };
         let given = finder.put(places.to_vec());
-        let before = given.energy;
-        let mut begun = given;
-        if before > GOOD {
-            begun = match finder.grown()? {
-                Some(grown) if grown.energy < before => grown,
-                _ => begun,
-            };
-        }
-        let found = finder.improved(begun)?;
+        let grown = if before > GOOD { finder.grown()? } else { None };
+        // One may lead where the other does not; what explains far less leads nowhere.
+        let grown = grown.filter(|grown| grown.energy < FAR_WORSE * before);
+        let is_hopeless = grown.as_ref().is_some_and(|grown| before > FAR_WORSE * grown.energy);
+        let (from_given, from_grown) = rayon::join(
+            || {
+                if is_hopeless {
+                    Ok(None)
+                } else {
+                    finder.improved(given).map(Some)
+                }
+            },
+            || grown.map(|grown| finder.improved(grown)).transpose(),
+        );
+        let found = match (from_given?, from_grown?) {
+            (Some(given), Some(grown)) if grown.energy < given.energy => grown,
+            (Some(given), _) => given,
+            (None, Some(grown)) => grown,
+            (None, None) => finder.put(places.to_vec()),
+        };
         let mut sought = Sought {
             places: found.places,
             form,
@@ -216,13 +229,16 @@ impl Limbs {
                     && !self.touch(pair.lattice, v, front[comparison.cell_at(*place)])
             })
             .collect();
+        let mut hang_together = vec![false; self.parts * self.parts];
+        for &[v, w] in &pair.lattice.edges {
+            let (a, b) = (self.part_of[v], self.part_of[w]);
+            hang_together[a * self.parts + b] = true;
+            hang_together[b * self.parts + a] = true;
+        }
         let lies_over = (0..front.len()).filter(|cell| comparison.figure[*cell]).filter(|cell| {
             let there: Vec<usize> = (0..layers.len()).filter(|part| layers[*part][*cell] != BARE).collect();
-            let mut pairs = there
-                .iter()
-                .enumerate()
-                .flat_map(|(k, a)| there[..k].iter().map(move |b| (*a, *b)));
-            pairs.any(|(a, b)| !self.are_neighbours(pair.lattice, a, b))
+            let mut pairs = (there.iter().enumerate()).flat_map(|(k, a)| there[..k].iter().map(move |b| (*a, *b)));
+            pairs.any(|(a, b)| !hang_together[a * self.parts + b])
         });
         sought.overlap = lies_over.count() as f64 / comparison.figure_cells() as f64;
     }
@@ -230,14 +246,6 @@ impl Limbs {
     /// Whether a vertex is next to a part.
     fn touch(&self, lattice: &Lattice, v: usize, part: Option<usize>) -> bool {
         lattice.neighbours[v].iter().any(|w| Some(self.part_of[*w]) == part)
-    }
-
-    /// Whether two parts hang together.
-    fn are_neighbours(&self, lattice: &Lattice, a: usize, b: usize) -> bool {
-        lattice.edges.iter().any(|[v, w]| {
-            let of = (self.part_of[*v], self.part_of[*w]);
-            of == (a, b) || of == (b, a)
-        })
     }
 }
 

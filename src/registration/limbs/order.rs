@@ -13,7 +13,7 @@ const MOST_EVIDENCE: i32 = 50;
 /// Moves of all parts at most.
 const ROUNDS: usize = 20;
 
-/// By part, its rank, the nearest the largest; and by pair, how many cells both lie on.
+/// By part, its rank, the nearest the largest.
 pub(super) fn ranks(layers: &[Layer]) -> Vec<usize> {
     let evidence = evidence(layers);
     let count = layers.len();

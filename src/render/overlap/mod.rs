@@ -23,12 +23,16 @@ use crate::pose::Mapping;
 const PAINTED_RINGS: usize = 2;
 const RIM_RINGS: usize = 1;
 
+/// What the weight of a shape counts beside that of its drawing for the order of regions.
+const FAINT: f64 = 1e-6;
+
 /// Paints frames of a figure that lies over itself.
 #[derive(Debug, Clone)]
-pub struct OverlapPainter {
+pub(crate) struct OverlapPainter {
     division: Division,
     regions: Vec<Region>,
     silhouette: Silhouette,
+    camera: Camera,
 }
 
 #[derive(Debug, Clone)]
@@ -40,7 +44,7 @@ struct Region {
 impl OverlapPainter {
     /// A painter of `mapping`, seen by `camera`. Every drawing was made on one pose; `drawing_of` says which one each pose shows.
     #[must_use]
-    pub fn new(
+    pub(crate) fn new(
         mapping: &Mapping,
         drawings: &[(&Drawing, usize)],
         drawing_of: &[usize],
@@ -76,7 +80,9 @@ impl OverlapPainter {
             drawings,
             rims: &rims,
             shown: &shown,
-        };
+            hidden: Vec::new(),
+        }
+        .with_hidden();
         let regions = (0..division.count)
             .into_par_iter()
             .map(|region| {
@@ -108,15 +114,21 @@ impl OverlapPainter {
             division,
             regions,
             silhouette,
+            camera,
         }
     }
 
     /// The frame of the figure whose #vertices positions are `positions`, as of [`Painter::paint`].
     #[must_use]
-    pub fn paint(&self, positions: &[Point], weights: &[f64], texture_weights: &[f64]) -> Frame {
+    pub(crate) fn paint(&self, positions: &[Point], weights: &[f64], texture_weights: &[f64]) -> Frame {
         let rings = self.silhouette.at(positions, weights);
         let mut frame: Option<Frame> = None;
-        for region in self.division.order(texture_weights) {
+        // Where no drawing of a pose that lies over itself is seen, its shape may count all the same.
+        let counts = texture_weights
+            .iter()
+            .zip(weights)
+            .map(|(seen, own)| seen + FAINT * own.max(0.0));
+        for region in self.division.order(&counts.collect::<Vec<_>>()) {
             let Region { painter, rims } = &self.regions[region];
             let within: Vec<Vec<Point>> = rims.iter().map(|rim| rim.at(&rings, positions)).collect();
             let own = painter.paint_within(positions, weights, texture_weights, within);
@@ -125,7 +137,10 @@ impl OverlapPainter {
                 Some(frame) => frame.put_over(&own, 1.0),
             }
         }
-        frame.unwrap_or_else(|| Frame::filled(0, 0, [0; 4]))
+        frame.unwrap_or_else(|| {
+            let [columns, rows] = self.camera.size();
+            Frame::filled(columns, rows, [0; 4])
+        })
     }
 }
 

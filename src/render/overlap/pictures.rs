@@ -5,6 +5,8 @@
 
 use std::borrow::Cow;
 
+use rayon::prelude::*;
+
 use super::division::Division;
 use super::rim::Rim;
 use crate::input::{Drawing, Picture};
@@ -24,27 +26,37 @@ pub(super) struct Pictures<'a> {
     pub(super) rims: &'a [Vec<Rim>],
     /// By pose, the rings of its silhouette.
     pub(super) shown: &'a [Vec<Vec<Point>>],
+    /// By region and drawing, once [`Self::with_hidden`] has found it: by pixel, whether something lies in front; `None` where nothing does anywhere.
+    pub(super) hidden: Vec<Vec<Option<Vec<bool>>>>,
 }
 
 impl Pictures<'_> {
+    /// Finds what is hidden of every region in every drawing.
+    pub(super) fn with_hidden(mut self) -> Self {
+        let of_region = |region: usize| {
+            (0..self.drawings.len())
+                .map(|drawing| self.found_hidden(region, drawing))
+                .collect()
+        };
+        let hidden = (0..self.division.count).into_par_iter().map(of_region).collect();
+        self.hidden = hidden;
+        self
+    }
+
     /// A region's picture of a drawing, and its rims there in source units; `painted` are the triangles that it is painted with.
     pub(super) fn of(&self, region: usize, drawing: usize, painted: &[usize]) -> (Cow<'_, Picture>, Vec<Vec<Point>>) {
         let (of, pose) = self.drawings[drawing];
         let rims = self.rims_at(region, pose);
-        let Some(hidden) = self.hidden(region, drawing) else {
+        let Some(hidden) = &self.hidden[region][drawing] else {
             return (Cow::Borrowed(&of.picture), rims);
         };
         let mut picture = of.picture.clone();
-        for (pixel, _) in picture.pixels.iter_mut().zip(&hidden).filter(|(_, hidden)| **hidden) {
+        for (pixel, _) in picture.pixels.iter_mut().zip(hidden).filter(|(_, hidden)| **hidden) {
             *pixel = [0; 4];
         }
         // Those that lie over themselves last.
         let mut others: Vec<usize> = (0..self.drawings.len()).filter(|other| *other != drawing).collect();
         others.sort_by_key(|other| self.mapping.overlaps.depth(self.drawings[*other].1).is_some());
-        let others: Vec<(usize, Option<Vec<bool>>)> = others
-            .into_iter()
-            .map(|other| (other, self.hidden(region, other)))
-            .collect();
         let triangles = self.mapping.poses.topology().triangles();
         let positions = self.mapping.poses.positions();
         let size = [picture.width, picture.height];
@@ -54,7 +66,8 @@ impl Pictures<'_> {
                 if !hidden[pixel] || picture.pixels[pixel] != [0; 4] {
                     return;
                 }
-                for (other, hidden_there) in &others {
+                for other in &others {
+                    let hidden_there = &self.hidden[region][*other];
                     let (from, on) = self.drawings[*other];
                     let [a, b, c] = triangles[t].map(|v| in_pixels(&from.picture, positions[on][v]));
                     let place = a + (b - a) * u + (c - a) * v;
@@ -81,7 +94,7 @@ impl Pictures<'_> {
     }
 
     /// By pixel of a drawing, whether something lies in front of the region there; `None` if nothing does anywhere.
-    fn hidden(&self, region: usize, drawing: usize) -> Option<Vec<bool>> {
+    fn found_hidden(&self, region: usize, drawing: usize) -> Option<Vec<bool>> {
         let (of, pose) = self.drawings[drawing];
         let count = self.division.count;
         let in_front = (0..count).filter(|other| self.division.in_front[pose][other * count + region] > 0);
@@ -108,12 +121,12 @@ fn widened(mask: &[bool], width: usize, by: usize) -> Vec<bool> {
     let mut across = vec![false; mask.len()];
     for (row, own) in across.chunks_exact_mut(width.max(1)).enumerate() {
         for column in (0..width).filter(|column| mask[row * width + column]) {
-            own[column.saturating_sub(by)..(column + by + 1).min(width)].fill(true);
+            own[column.saturating_sub(by)..column.saturating_add(by).saturating_add(1).min(width)].fill(true);
         }
     }
     let mut both = across.clone();
     for row in 0..height {
-        for other in row.saturating_sub(by)..(row + by + 1).min(height) {
+        for other in row.saturating_sub(by)..row.saturating_add(by).saturating_add(1).min(height) {
             for column in 0..width {
                 both[row * width + column] |= across[other * width + column];
             }

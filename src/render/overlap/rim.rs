@@ -83,16 +83,20 @@ impl Boundary {
     fn rim(&self, edges: &[(usize, usize)]) -> Rim {
         let mut nodes = Vec::new();
         // An edge of the mesh's boundary stands for the rows beside it, one inside for its end.
-        for (a, b) in edges {
+        for (k, (a, b)) in edges.iter().enumerate() {
             let on_boundary = self.edges.get(a) == Some(b);
+            // A rim inside may touch the boundary in a vertex alone.
+            let (next, after) = edges[(k + 1) % edges.len()];
+            let goes_on_inside = self.edges.get(&next) != Some(&after);
             match (on_boundary, self.row_of.get(a), self.row_of.get(b)) {
                 (true, Some(&(ring, from)), Some(&(_, to))) => {
                     let count = self.rows[ring];
                     let steps = (to + count - from) % count;
-                    // The only boundary edge of its ring goes all the way round.
                     nodes.extend((0..=steps).map(|k| Node::Row(ring, (from + k) % count)));
                 }
                 (false, _, None) => nodes.push(Node::Vertex(*b)),
+                (false, _, Some(_)) if goes_on_inside => nodes.push(Node::Vertex(*b)),
+                (true, _, _) => nodes.push(Node::Vertex(*b)),
                 _ => (),
             }
         }
@@ -103,7 +107,7 @@ impl Boundary {
 /// By vertex of a ring of the mesh, the row of the silhouette beside it, in order around the ring.
 fn rows_along(vertices: &[usize], rows: &[Point], positions: &[Point]) -> Vec<usize> {
     let count = rows.len();
-    if count == 0 {
+    if count == 0 || vertices.is_empty() {
         return Vec::new();
     }
     let place = |v: usize| positions[vertices[v % vertices.len()]];

@@ -42,6 +42,7 @@ figure = "lines"
 gap = 0.02
 paper = "clear"
 holes = "fill"
+overlaps = "refuse"
 threshold = 0.4
 [mesh]
 simplify = 0.01
@@ -89,6 +90,7 @@ keys = [ { time = 0, at = [0, 0] }, { time = 2.0, at = [1, 1] } ]
     let scene = parse(text).expect("a scene");
     assert_eq!(scene.reference, Some(0));
     assert_eq!(scene.input.holes, Holes::Fill);
+    assert_eq!(scene.input.overlaps, crate::pipeline::OverlapSearch::Refuse);
     assert_eq!(scene.blend.reference, Reference::Pose(1));
     assert_eq!(scene.blend.anchor, Anchor::Point(0));
     let drawings: Vec<_> = (0..2)
