@@ -27,7 +27,7 @@ use crate::registration::Explained;
 const FINER_LINES: [f64; 4] = [1.0, 0.25, 0.0625, 0.0];
 
 /// The share of the tolerance that the outlines of figures have some of whose poses lie over themselves.
-const OVERLAPPING_TOLERANCE: f64 = 0.4;
+const OVERLAPPING_TOLERANCE: f64 = 0.3;
 
 /// By how much, as a fraction, the units of drawings may differ without a word: rounding of a page's size.
 const LIKE_UNITS: f64 = 0.02;

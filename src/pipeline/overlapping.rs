@@ -35,7 +35,7 @@ const LEAST_OVERLAP: f64 = 0.005;
 /// And if what is not explained falls at least to this share of what it was.
 const EXPLAINED_SHARE: f64 = 0.95;
 /// The mesh and the pose's figure have at least this much in common, of what either has: a limb that was not found leaves its place bare.
-const LEAST_COVER: f64 = 0.935;
+const LEAST_COVER: f64 = 0.931;
 /// Cells along the diagonal that this is counted on.
 const COVER_CELLS: f64 = 500.0;
 /// Where hardly anything lies over anything, what is not explained has to fall further.
