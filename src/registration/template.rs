@@ -45,11 +45,16 @@ pub(super) struct Fit {
 impl Template {
     /// Patches with this radius, in pixels.
     pub(super) fn new(lattice: &Lattice, image: &ChannelImage, radius: f64) -> Self {
-        Self::sampled(lattice, image, radius, STEPS_A_RADIUS)
+        Self::sampled(lattice, image, radius, (STEPS_A_RADIUS, OUTSIDE_WEIGHT))
     }
 
-    /// The same in so many steps from their middle to their edge.
-    pub(super) fn sampled(lattice: &Lattice, image: &ChannelImage, radius: f64, steps: f64) -> Self {
+    /// Patches in so many steps from their middle to their edge, whose places outside the figure weigh as is said.
+    pub(super) fn sampled(
+        lattice: &Lattice,
+        image: &ChannelImage,
+        radius: f64,
+        (steps, outside_weight): (f64, f32),
+    ) -> Self {
         let offsets = disc(radius, (radius / steps).max(1.0));
         let reach = GEODESIC_REACH * radius + lattice.spacing;
         let near = lattice.geodesic_neighbourhoods(reach);
@@ -64,7 +69,7 @@ impl Template {
                 weights.push(match lattice.cell_at(place) {
                     Some((cell, outside)) if near[v].contains_key(&cell) => {
                         let fall = offset.norm_squared() / (FALL * radius * FALL * radius);
-                        let inside = if outside > 0.0 { OUTSIDE_WEIGHT } else { 1.0 };
+                        let inside = if outside > 0.0 { outside_weight } else { 1.0 };
                         let known = if outside > far { FAR_WEIGHT } else { 1.0 };
                         libm::expf(-0.5 * fall as f32) * inside * known
                     }

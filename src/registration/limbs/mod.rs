@@ -38,6 +38,8 @@ const ORDERED: usize = 3;
 /// The patches of hypotheses: their radius, in figure units, and steps from middle to edge.
 const PATCH_RADIUS: f64 = 0.028;
 const PATCH_STEPS: f64 = 2.2;
+/// What places outside the figure weigh in them: a limb that lies over another part has that around it, and not what is around it in the reference.
+const PATCH_OUTSIDE: f32 = 0.0;
 /// The levels that hypotheses are registered at.
 const REGISTERED: std::ops::Range<usize> = 1..3;
 /// Chains longer than this are divided into parts of about as many bands: an arm bends, and may lie in front of one thing and behind another.
@@ -103,7 +105,7 @@ impl Limbs {
                 lattice,
                 levels.get(COMPARED)?,
                 PATCH_RADIUS * PIXELS_PER_UNIT,
-                PATCH_STEPS,
+                (PATCH_STEPS, PATCH_OUTSIDE),
             ),
             compared: ByteImage::new(levels.get(COMPARED)?, 0),
             ordered: ByteImage::new(levels.get(ORDERED)?, 0),
