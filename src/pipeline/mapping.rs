@@ -12,6 +12,7 @@ use super::spec::{LayerRole, LayerSpec, OverlapSearch};
 use super::triangulation::{self, Labels};
 use super::{MappingReport, PipelineError, Stage, deformed};
 use crate::appearance::Appearance;
+use crate::blend::{BlendOptions, RigidBlend};
 use crate::compatible::{
     CompatibleMesh, Effort, Guide, Simplification, Simplified, TriangulateReport, refine_guided, triangulate_features,
 };
@@ -99,6 +100,10 @@ fn map_drawn(
     let mut found = overlapping::found(layer, drawings, &known)?;
     while let Some(overlapping) = found {
         let mapped = map_overlapping(layer, drawings, &overlapping, notes.clone(), begins)?;
+        // A mesh that winds around one of its vertices twice cannot be blended.
+        if RigidBlend::new(&mapped.0.poses, &BlendOptions::default()).is_err() {
+            break;
+        }
         let uncovered = overlapping.uncovered(&mapped.0);
         if uncovered.is_empty() {
             return Ok(mapped);
