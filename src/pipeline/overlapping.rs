@@ -30,6 +30,8 @@ use crate::render::coverage::Coverage;
 
 /// An outline is clearly shorter, for its area, than the longest if it has less than this share of its length: drawn anew, apart, it varies by 4 %.
 const SHORTER: f64 = 0.95;
+/// One that has less than this share hides no parts: it is another drawing, or the longest is that of bare lines.
+const MUCH_SHORTER: f64 = 0.4;
 /// A pose lies over itself if at least this share of its figure does.
 const LEAST_OVERLAP: f64 = 0.005;
 /// And if what is not explained falls at least to this share of what it was.
@@ -75,7 +77,7 @@ pub(super) fn found(
         return Ok(None);
     };
     let shorter: Vec<usize> = (0..lengths.len())
-        .filter(|pose| lengths[*pose] < SHORTER * lengths[template])
+        .filter(|pose| (MUCH_SHORTER..SHORTER).contains(&(lengths[*pose] / lengths[template])))
         .collect();
     if shorter.is_empty() {
         return Ok(None);
