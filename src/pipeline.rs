@@ -33,6 +33,7 @@ mod mapping;
 mod named;
 mod note;
 mod overlapping;
+mod overlapping_mapping;
 mod parts;
 mod reach;
 mod report;

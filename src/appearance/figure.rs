@@ -226,7 +226,7 @@ impl<'a> PictureSampler<'a> {
 
     /// The colour of the working pixel around a place of the source, in 0..1, without what shines through; white where there is none.
     fn colour(&self, middle: Point) -> [f32; 3] {
-        let centre = (middle - self.picture.origin) * self.picture.pixels_per_unit;
+        let centre = self.picture.to_pixels(middle);
         let mut sum = [0.0; 4];
         for j in 0..self.count {
             for i in 0..self.count {

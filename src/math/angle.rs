@@ -10,6 +10,13 @@ pub(crate) fn between(a: Point, b: Point) -> f64 {
     libm::atan2(cross(a, b), a.dot(&b))
 }
 
+/// The angle by which points, relative to their middle, have to be turned to come nearest to others, relative to theirs, by least squares; in `(-pi, pi]`.
+#[must_use]
+pub(crate) fn best_turn(pairs: impl Iterator<Item = (Point, Point)>) -> f64 {
+    let turn: Point = pairs.map(|(a, b)| Point::new(a.dot(&b), cross(a, b))).sum();
+    between(Point::new(1.0, 0.0), turn)
+}
+
 /// `angle_rad` moved by whole turns into `(-pi, pi]`.
 #[must_use]
 pub(crate) fn wrap(angle_rad: f64) -> f64 {

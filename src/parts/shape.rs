@@ -146,7 +146,7 @@ fn colour(outline: &Outline, picture: &Picture, [low, high]: [Point; 2]) -> [f64
             if place.x > high.x || place.y > high.y || !outline.contains(place) {
                 continue;
             }
-            let pixel = (place - picture.origin) * picture.pixels_per_unit;
+            let pixel = picture.to_pixels(place);
             // Casts saturate.
             let at = (pixel.y as usize)
                 .saturating_mul(picture.width)

@@ -82,23 +82,19 @@ impl LayerArt {
                         .zip(drawn_on.iter().copied())
                         .collect();
                     let painter = OverlapPainter::new(mapping, &drawn, &shown, silhouette, camera, options);
-                    return Ok(Self {
-                        style: Style::Overlapping(Box::new(painter)),
-                        drawings,
+                    Style::Overlapping(Box::new(painter))
+                } else {
+                    let texture = |(drawing, &drawn_on): (&Arc<Drawing>, &usize)| PoseTexture {
+                        texture: match sampling {
+                            Sampling::Smooth => Texture::new(&drawing.picture, &drawing.outline, scale),
+                            Sampling::Nearest => Texture::for_nearest(&drawing.picture, &drawing.outline),
+                        },
                         drawn_on,
-                        drawing_of,
-                    });
+                    };
+                    let textures = drawings.iter().zip(&drawn_on).map(texture).collect();
+                    let painter = Painter::registered(mapping, mesh(), textures, shown, silhouette, camera, options);
+                    Style::Pixels(Box::new(painter))
                 }
-                let texture = |(drawing, &drawn_on): (&Arc<Drawing>, &usize)| PoseTexture {
-                    texture: match sampling {
-                        Sampling::Smooth => Texture::new(&drawing.picture, &drawing.outline, scale),
-                        Sampling::Nearest => Texture::for_nearest(&drawing.picture, &drawing.outline),
-                    },
-                    drawn_on,
-                };
-                let textures = drawings.iter().zip(&drawn_on).map(texture).collect();
-                let painter = Painter::registered(mapping, mesh(), textures, shown, silhouette, camera, options);
-                Style::Pixels(Box::new(painter))
             }
         };
         Ok(Self {

@@ -7,8 +7,9 @@ use super::drawings::used_drawings;
 use super::drawn::{Known, is_found};
 use super::landmarks::{self, Landmarks};
 use super::note::{Note, NoteKind};
-use super::overlapping::{self, Overlapping};
-use super::spec::{LayerRole, LayerSpec, OverlapSearch};
+use super::overlapping;
+use super::overlapping_mapping::map_overlapping;
+use super::spec::{LayerRole, LayerSpec};
 use super::triangulation::{self, Labels};
 use super::{MappingReport, PipelineError, Stage, deformed};
 use crate::appearance::Appearance;
@@ -18,7 +19,6 @@ use crate::compatible::{
 };
 use crate::input::{Drawing, InputNote};
 use crate::math::Point;
-use crate::mesh::PointLocator;
 use crate::outline::{ArcLength, Outline};
 use crate::pose::{Mapping, Matching, MeshQuality, Overlaps, PoseSet};
 use crate::registration::Explained;
@@ -26,9 +26,6 @@ use crate::registration::Explained;
 /// Lines inside are simplified to the mesh's tolerance; where they then touch the outline or one another, to these shares
 /// of it.
 const FINER_LINES: [f64; 4] = [1.0, 0.25, 0.0625, 0.0];
-
-/// The share of the tolerance that the outlines of figures have some of whose poses lie over themselves.
-const OVERLAPPING_TOLERANCE: f64 = 0.3;
 
 /// By how much, as a fraction, the units of drawings may differ without a word: rounding of a page's size.
 const LIKE_UNITS: f64 = 0.02;
@@ -78,7 +75,7 @@ pub(super) fn map_drawings_again(
 }
 
 /// Maps a layer without copies.
-fn map_drawn(
+pub(super) fn map_drawn(
     layer: &LayerSpec,
     drawings: &[Arc<Drawing>],
     before: Option<&Arc<Boundaries>>,
@@ -211,86 +208,6 @@ fn map_drawn(
         },
     };
     Ok((mapping, report, Arc::clone(&boundaries)))
-}
-
-/// Maps a layer without copies some of whose drawings lie over themselves; `notes` are those that are known.
-fn map_overlapping(
-    layer: &LayerSpec,
-    drawings: &[Arc<Drawing>],
-    overlapping: &Overlapping,
-    mut notes: Vec<Note>,
-    begins: &mut dyn FnMut(Stage),
-) -> Result<(Mapping, MappingReport, Arc<Boundaries>), PipelineError> {
-    let names = layer.names();
-    let kept = overlapping.open();
-    let mut open = layer.only(&kept);
-    open.overlaps = OverlapSearch::Refuse;
-    // What is marked in the other poses alone has no place here.
-    let is_marked = |at: &[Option<Point>]| at.iter().any(Option::is_some);
-    let marked: Vec<usize> = (0..open.landmarks.len())
-        .filter(|k| is_marked(&open.landmarks[*k].at))
-        .collect();
-    let lines: Vec<usize> = (0..open.paths.len())
-        .filter(|k| open.paths[*k].at.iter().any(Option::is_some))
-        .collect();
-    open = open.with_landmarks(&marked, &lines);
-    // What lies over something shows its own edge there: the mesh is held closer to it.
-    open.mesh.simplify.tolerance *= OVERLAPPING_TOLERANCE;
-    let open_drawings: Vec<Arc<Drawing>> = kept.iter().map(|pose| Arc::clone(&drawings[*pose])).collect();
-    let (mapping, of_open, boundaries) = map_drawn(&open, &open_drawings, None, begins)?;
-    notes.extend(
-        of_open
-            .notes
-            .into_iter()
-            .filter(|note| !matches!(note.kind, NoteKind::Drawing(_))),
-    );
-    let outlines = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
-    let whole = overlapping.completed(&names, outlines, &mapping)?;
-    let registration = &overlapping.guide().registration;
-    let explained: Vec<Option<Explained>> = (0..names.len()).map(|pose| registration.explained(pose)).collect();
-    let template = PointLocator::new(
-        whole.poses.topology().triangles(),
-        &whole.poses.positions()[overlapping.guide().reference],
-    );
-    let of_template = kept
-        .iter()
-        .position(|pose| *pose == overlapping.guide().reference)
-        .unwrap_or(0);
-    let mut landmarks = of_open.landmarks;
-    for landmark in &mut landmarks {
-        let carried = |pose: usize| match kept.iter().position(|kept| *kept == pose) {
-            Some(number) => landmark.at[number].clone(),
-            None => {
-                let bound = landmark.at[of_template].iter().filter_map(|p| template.bind(*p));
-                bound.map(|bound| bound.at(&whole.poses.positions()[pose])).collect()
-            }
-        };
-        let at = (0..names.len()).map(carried).collect();
-        let name = &landmark.name;
-        let is_given = |pose: usize| {
-            let point = layer
-                .landmarks
-                .iter()
-                .any(|own| own.name == *name && own.at[pose].is_some());
-            point
-                || layer
-                    .paths
-                    .iter()
-                    .any(|own| own.name == *name && own.at[pose].is_some())
-        };
-        let given = (0..names.len()).map(is_given).collect();
-        (landmark.given, landmark.at) = (given, at);
-    }
-    let report = MappingReport {
-        notes,
-        matching: overlapping.matched.outer.clone(),
-        explained,
-        holes: overlapping.matched.holes.clone(),
-        landmarks,
-        quality: MeshQuality::of(&whole.poses),
-        ..of_open
-    };
-    Ok((whole, report, boundaries))
 }
 
 /// Says which poses show something else than the reference, and where a landmark would say most. Of two shapes on which nothing is drawn, there is nothing

@@ -198,7 +198,7 @@ pub struct LayerSpec {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum OverlapSearch {
-    /// They are found by what is drawn, where outlines are clearly shorter than that of the most open drawing.
+    /// Such poses are found by what is drawn, where outlines are clearly shorter than that of the most open drawing.
     #[default]
     Auto,
     /// Outlines have to correspond as they are.

@@ -193,10 +193,7 @@ impl Pair<'_> {
         let middle = |points: &[Point]| points.iter().sum::<Point>() / count;
         let (from, to) = (middle(&self.lattice.points), middle(places));
         let pairs = self.lattice.points.iter().zip(places);
-        let turn: Point = pairs
-            .map(|(a, b)| Point::new((a - from).dot(&(b - to)), point::cross(a - from, b - to)))
-            .sum();
-        angle::between(Point::new(1.0, 0.0), turn).abs()
+        angle::best_turn(pairs.map(|(a, b)| (a - from, b - to))).abs()
     }
 }
 

@@ -1,8 +1,8 @@
 //! How far a registration explains a drawing, and where it does so least.
 
 use super::lattice::Lattice;
-use super::pair::{DOUBT, Registered};
-use super::template::MOST_DIFFERENCE;
+use super::pair::Registered;
+use super::template::{DOUBT, MOST_DIFFERENCE};
 
 /// Steps in which what is left at every vertex is averaged with its neighbours', so that a place is one that can be seen.
 const SMOOTHINGS: usize = 2;

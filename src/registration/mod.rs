@@ -21,6 +21,7 @@
 
 mod beginning;
 mod explained;
+mod geodesic;
 mod lattice;
 mod levels;
 mod limbs;

@@ -5,15 +5,13 @@ use super::lattice::Lattice;
 use super::levels::{LEVELS, Level};
 use super::register::{Pin, RegistrationError, RingPairs};
 use super::rigid::{Rigid, Targets};
-use super::template::{Fit, MOST_DIFFERENCE, Template, Window};
+use super::template::{Fit, Template, Window};
 use crate::appearance::{Appearance, ByteImage, ChannelImage, PIXELS_PER_UNIT};
 use crate::math::{Matrix, Point};
 
 /// A beginning is first made this stiff, beside a trust of 1 in where it is: folds that the outlines left come out.
 const FIRST_STIFFNESS: f64 = 30.0;
 const FIRST_ITERATIONS: usize = 10;
-/// Trust falls by a factor e when the best place in the window differs by this share of [`MOST_DIFFERENCE`].
-pub(super) const DOUBT: f32 = 0.25;
 /// The trust in outer rings that stay, less than in what is clear, and in rims between the landmarks that are on them, more than that: far more than in empty
 /// paint, which would give way.
 const HELD_OUTER: f64 = 30.0;
@@ -117,19 +115,18 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// The vertices registered further from where they are, at the levels from `first` on. Those that are hidden are not compared.
+    /// The vertices registered further from where they are, at the levels from `first` on, of which the pose is given. Those that are hidden are not compared.
     pub(super) fn settled_from(
         &self,
         rigid: &Rigid,
         places: &[Point],
-        first: usize,
+        (first, images): (usize, &[ChannelImage]),
         templates: &[Template],
         is_hidden: &[bool],
     ) -> Result<Vec<Point>, RegistrationError> {
         let mut places = places.to_vec();
-        for (level, template) in LEVELS.iter().zip(templates).skip(first) {
-            let image = self.pose.blurred(level.deviation_px);
-            places = self.level(level, template, &image, rigid, places, is_hidden)?.places;
+        for ((level, template), image) in LEVELS.iter().zip(templates).skip(first).zip(images) {
+            places = self.level(level, template, image, rigid, places, is_hidden)?.places;
         }
         Ok(places)
     }
@@ -198,7 +195,7 @@ impl<'a> Pair<'a> {
     ) -> Result<Settled, RegistrationError> {
         let window = Window::new(level.reach * PIXELS_PER_UNIT, level.step * PIXELS_PER_UNIT);
         let image = ByteImage::new(image, window.reach);
-        let floor = Matrix::identity() * (0.25 * window.step * window.step);
+        let floor = window.floor();
         let (mut fits, mut trusts) = (Vec::new(), Vec::new());
         for _ in 0..level.iterations {
             let frames = rigid.frames(&places, 1);
@@ -210,10 +207,9 @@ impl<'a> Pair<'a> {
                     trust.push(Matrix::zeros());
                     continue;
                 }
-                let confidence = f64::from(libm::expf(-fit.residual / (DOUBT * MOST_DIFFERENCE)));
-                let inverse = (fit.covariance + floor).try_inverse().unwrap_or_else(Matrix::zeros);
-                targets.push(place + fit.displacement);
-                trust.push(inverse * confidence * self.lattice.spacing.powi(2));
+                let (target, certainty) = fit.target(*place, floor, self.lattice.spacing);
+                targets.push(target);
+                trust.push(certainty);
             }
             self.pin(rigid, &places, &mut targets, &mut trust);
             trusts = trust.iter().map(|trust| 0.5 * trust.trace()).collect();

@@ -294,13 +294,9 @@ impl Searched {
 
     /// The limbs of the reference.
     fn limbs(&self) -> Option<&Limbs> {
-        let made = || {
-            let levels: Vec<ChannelImage> = (LEVELS.par_iter())
-                .map(|level| self.reference.blurred(level.deviation_px))
-                .collect();
-            Limbs::new(&self.lattice, &levels)
-        };
-        self.limbs.get_or_init(made).as_ref()
+        self.limbs
+            .get_or_init(|| Limbs::new(&self.lattice, &self.reference))
+            .as_ref()
     }
 
     fn registered(

@@ -16,6 +16,8 @@ const GEODESIC_REACH: f64 = 1.5;
 const OUTSIDE_WEIGHT: f32 = 0.6;
 /// What places weigh that are far outside: nothing is known of them.
 const FAR_WEIGHT: f32 = 0.3;
+/// Trust falls by a factor e when the best place in the window differs by this share of [`MOST_DIFFERENCE`].
+pub(super) const DOUBT: f32 = 0.25;
 /// Differences of a place, over all channels, count no more than this: what only one drawing has is left out.
 pub(super) const MOST_DIFFERENCE: f32 = 1.2;
 /// Vertices a task.
@@ -40,6 +42,16 @@ pub(super) struct Fit {
     pub(super) covariance: Matrix,
     /// The least cost, in the mean over the patch.
     pub(super) residual: f32,
+}
+
+impl Fit {
+    /// Where the vertex is drawn to from `place`, and the trust in it: less where the best place differs, and none along what looks alike. `floor` is what a step
+    /// of the search cannot tell, `spacing` the lattice's.
+    pub(super) fn target(&self, place: Point, floor: Matrix, spacing: f64) -> (Point, Matrix) {
+        let confidence = f64::from(libm::expf(-self.residual / (DOUBT * MOST_DIFFERENCE)));
+        let inverse = (self.covariance + floor).try_inverse().unwrap_or_else(Matrix::zeros);
+        (place + self.displacement, inverse * confidence * spacing.powi(2))
+    }
 }
 
 impl Template {
@@ -106,7 +118,7 @@ impl Template {
         self.fits_of(&all, image, places, frames, window, temperature)
     }
 
-    /// The same of some vertices.
+    /// How well the patches of some vertices fit, as of [`Self::fits`].
     pub(super) fn fits_of(
         &self,
         vertices: &[usize],
@@ -197,6 +209,11 @@ pub(super) struct Window {
 }
 
 impl Window {
+    /// The covariance that a step of the search cannot tell.
+    pub(super) fn floor(&self) -> Matrix {
+        Matrix::identity() * (0.25 * self.step * self.step)
+    }
+
     /// A disc of this radius in steps of at least a pixel, both in pixels and rounded.
     pub(super) fn new(radius: f64, step: f64) -> Self {
         let step = step.round().max(1.0);

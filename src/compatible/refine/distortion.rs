@@ -62,7 +62,7 @@ pub(super) fn minimise(mesh: &mut EditableMesh, stars: &Stars, sweeps: usize, ta
     minimise_of(mesh, stars, sweeps, targets, |_| true);
 }
 
-/// The same of the poses that `moves` says; the others stay as they are.
+/// As [`minimise`], but poses that `moves` does not say stay as they are.
 pub(super) fn minimise_of(
     mesh: &mut EditableMesh,
     stars: &Stars,

@@ -13,9 +13,9 @@
 //!
 //! Limit: a limb that lies within the silhouette of the trunk is part of the trunk.
 
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::BTreeMap;
 
+use super::chain::{Chain, chains, joints};
 use crate::math::Point;
 use crate::registration::lattice::Lattice;
 
@@ -38,15 +38,6 @@ const TIP_RINGS: usize = 3;
 const LEAST_VERTICES: usize = 4;
 /// No node.
 const NONE: usize = usize::MAX;
-
-/// Bands that follow one another.
-#[derive(Debug, Clone)]
-pub(super) struct Chain {
-    /// From where it hangs to its end.
-    pub(super) nodes: Vec<usize>,
-    /// The chain that it hangs on; `None` of the root.
-    pub(super) parent: Option<usize>,
-}
 
 /// The bands of a lattice.
 #[derive(Debug)]
@@ -332,7 +323,7 @@ impl Making<'_> {
 
     /// The node that most vertices next to these are in.
     fn touched(&self, vertices: &[usize]) -> Option<usize> {
-        let mut counts = std::collections::BTreeMap::new();
+        let mut counts = BTreeMap::new();
         for &w in vertices.iter().flat_map(|v| &self.lattice.neighbours[*v]) {
             if self.node_of[w] != NONE && !vertices.contains(&w) {
                 *counts.entry(self.node_of[w]).or_insert(0usize) += 1;
@@ -403,110 +394,11 @@ impl Making<'_> {
     }
 }
 
-/// The chains of a tree of bands; those that `firsts` begin are chains of their own.
-fn chains(parents: &[usize], firsts: &[usize]) -> Vec<Chain> {
-    let children = |node: usize| (0..parents.len()).filter(move |child| parents[*child] == node);
-    let mut chains = vec![Chain {
-        nodes: vec![0],
-        parent: None,
-    }];
-    let mut waiting: std::collections::VecDeque<(usize, usize)> = children(0).map(|child| (child, 0)).collect();
-    while let Some((first, parent)) = waiting.pop_front() {
-        let mut nodes = vec![first];
-        while let Some(&last) = nodes.last() {
-            let mut next = children(last);
-            match (next.next(), next.next()) {
-                (Some(only), None) if !firsts.contains(&only) => nodes.push(only),
-                _ => break,
-            }
-        }
-        let number = chains.len();
-        for &node in &nodes {
-            waiting.extend(
-                children(node)
-                    .filter(|child| !nodes.contains(child))
-                    .map(|child| (child, number)),
-            );
-        }
-        chains.push(Chain {
-            nodes,
-            parent: Some(parent),
-        });
-    }
-    chains
-}
-
-/// Where every band meets the one that it hangs on: between the vertices of both that are neighbours.
-fn joints(lattice: &Lattice, nodes: &[Vec<usize>], parents: &[usize], node_of: &[usize]) -> Vec<Point> {
-    let joint = |(node, vertices): (usize, &Vec<usize>)| {
-        let parent = parents[node];
-        let (mut own, mut other) = ((Point::zeros(), 0usize), (Point::zeros(), 0usize));
-        for &v in vertices {
-            for &w in lattice.neighbours[v].iter().filter(|w| node_of[**w] == parent) {
-                own = (own.0 + lattice.points[v], own.1 + 1);
-                other = (other.0 + lattice.points[w], other.1 + 1);
-            }
-        }
-        if own.1 > 0 {
-            return (own.0 + other.0) / (2 * own.1) as f64;
-        }
-        vertices.iter().map(|v| lattice.points[*v]).sum::<Point>() / vertices.len().max(1) as f64
-    };
-    nodes.iter().enumerate().map(joint).collect()
-}
-
-fn median(values: &[f64]) -> f64 {
+/// The median, the upper one of two; 0 of nothing.
+pub(super) fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
-}
-
-/// A vertex that waits for its turn, the nearest first.
-#[derive(PartialEq)]
-struct Waiting(f64, usize);
-
-impl Eq for Waiting {}
-
-impl Ord for Waiting {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.0.total_cmp(&self.0).then(other.1.cmp(&self.1))
-    }
-}
-
-impl PartialOrd for Waiting {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Lattice {
-    /// By vertex, how far the nearest of `sources` is along edges, in pixels; infinite where there is no way.
-    pub(super) fn distances_from(&self, sources: &[usize]) -> Vec<f64> {
-        self.distances_within(sources, &vec![true; self.points.len()])
-    }
-
-    /// The same along vertices that are `within`.
-    fn distances_within(&self, sources: &[usize], within: &[bool]) -> Vec<f64> {
-        let mut distance = vec![f64::INFINITY; self.points.len()];
-        let mut waiting = BinaryHeap::new();
-        for &source in sources {
-            distance[source] = 0.0;
-            waiting.push(Waiting(0.0, source));
-        }
-        while let Some(Waiting(travelled, v)) = waiting.pop() {
-            if travelled > distance[v] {
-                continue;
-            }
-            for &w in self.neighbours[v].iter().filter(|w| within[**w]) {
-                let length = travelled + (self.points[w] - self.points[v]).norm();
-                if length < distance[w] {
-                    distance[w] = length;
-                    waiting.push(Waiting(length, w));
-                }
-            }
-        }
-        distance
-    }
 }
 
 #[cfg(test)]

@@ -33,7 +33,8 @@ pub(super) struct Comparison<'a> {
     pub(super) size: [usize; 2],
     /// By cell, whether its middle is in the pose's figure.
     pub(super) figure: Vec<bool>,
-    figure_cells: usize,
+    /// How many these are, at least 1.
+    pub(super) figure_cells: usize,
     /// By part, the triangles whose last corner, from the root on, it has.
     triangles: Vec<Vec<[usize; 3]>>,
 }
@@ -120,11 +121,6 @@ impl<'a> Comparison<'a> {
         }
         let sum = inside as f64 + OUTSIDE_SHARE * f64::from(MOST) * outside as f64;
         sum / (f64::from(STEPS_PER_UNIT) * self.figure_cells as f64)
-    }
-
-    /// How many cells the pose's figure has.
-    pub(super) fn figure_cells(&self) -> usize {
-        self.figure_cells
     }
 }
 

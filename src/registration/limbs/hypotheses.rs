@@ -15,10 +15,10 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 
 use rayon::prelude::*;
 
-use super::articulation::Articulation;
+use super::articulation::{Articulation, median};
 use super::comparison::{BARE, CELL_PX, Comparison, Layer, MOST};
 use crate::appearance::STEPS_PER_UNIT;
-use crate::math::{Point, angle, point, rotation};
+use crate::math::{Point, angle, rotation};
 use crate::registration::template::{MOST_DIFFERENCE, Template};
 
 /// States that go on: so many, and more for every band of the chain, since a long one can go wrong more often; at most.
@@ -33,13 +33,21 @@ const BENDS_DEG: [f64; 9] = [0.0, -12.0, 12.0, -25.0, 25.0, -45.0, 45.0, -70.0, 
 const SHIFTS: [(f64, usize, f64); 4] = [(0.0, 1, 0.0), (1.0, 6, 0.01), (2.2, 8, 0.03), (4.0, 12, 0.06)];
 /// What a vertex costs where others may hide it.
 const HIDDEN: f64 = 0.3;
+/// Differences of the rest from which on the pose is not quite explained, and not at all.
+const BARELY: f32 = 0.25;
+const BADLY: f32 = 0.75;
+/// What is not explained is averaged this far around, in spacings: a single line is no limb.
+const LIMB_SPACINGS: f64 = 0.4;
 /// What a vertex earns where nothing else explains the pose, if it fits.
 const EXPLAINS: f64 = 0.35;
 /// What a radian of turn costs a vertex of the first band, and a bend of 45 degrees one of a later band; bends cost as their 3/2th power.
 const TURN_COST: f64 = 0.02;
 const BEND_COST: f64 = 0.05;
-/// What a vertex costs where its chain is already, and how many bands further back that is looked for.
+/// How broad a chain is, in median depths of a band's vertices, beside a spacing.
+const BREADTH: f64 = 1.6;
+/// What a vertex costs where its chain is already, within how many breadths, and how many bands further back that is looked for.
 const AGAIN: f64 = 0.08;
+const AGAIN_REACH: f64 = 1.5;
 const AGAIN_BANDS: usize = 3;
 /// Nearer than this to one of these, in breadths, it is hidden by it.
 const UNDER: f64 = 0.9;
@@ -121,14 +129,13 @@ impl Search<'_> {
             .map(|(differs, in_figure)| {
                 let differs = f32::from((*differs).min(MOST)) / STEPS_PER_UNIT;
                 if *in_figure {
-                    ((differs - 0.25) / 0.5).clamp(0.0, 1.0)
+                    ((differs - BARELY) / (BADLY - BARELY)).clamp(0.0, 1.0)
                 } else {
                     0.0
                 }
             })
             .collect();
-        // Averaged over a square about as wide as a band: single lines are not limbs.
-        let reach = ((0.4 * self.comparison.lattice.spacing / CELL_PX as f64).round() as usize).max(1);
+        let reach = ((LIMB_SPACINGS * self.comparison.lattice.spacing / CELL_PX as f64).round() as usize).max(1);
         Rest {
             is_covered: others.iter().map(|differs| *differs != BARE).collect(),
             unexplained: averaged(&bare, columns, rows, reach),
@@ -148,13 +155,7 @@ impl Search<'_> {
         let count = near.len().max(1) as f64;
         let from = near.iter().map(|v| points[*v]).sum::<Point>() / count;
         let to = near.iter().map(|v| places[*v]).sum::<Point>() / count;
-        let turn: Point = (near.iter())
-            .map(|v| {
-                let (a, b) = (points[*v] - from, places[*v] - to);
-                Point::new(a.dot(&b), point::cross(a, b))
-            })
-            .sum();
-        let turn_rad = angle::between(Point::new(1.0, 0.0), turn);
+        let turn_rad = angle::best_turn(near.iter().map(|v| (points[*v] - from, places[*v] - to)));
         (to + rotation(turn_rad) * (joint - from) * self.scale, turn_rad)
     }
 
@@ -203,12 +204,13 @@ impl Search<'_> {
         let step = (limbs.joints[node] - limbs.joints[before]) * self.scale;
         let weight = limbs.nodes[node].len() as f64;
         let Some(last) = trail.last() else { return Vec::new() };
-        let breadth = 1.6 * median_depth(limbs, node) * self.scale + self.comparison.lattice.spacing;
+        let depths: Vec<f64> = limbs.nodes[node].iter().map(|v| limbs.depth[*v]).collect();
+        let breadth = BREADTH * median(&depths) * self.scale + self.comparison.lattice.spacing;
         let mut states = Vec::with_capacity(last.len() * BENDS_DEG.len());
         for (number, state) in last.iter().enumerate() {
             let joint = state.joint + rotation(state.turn_rad) * step;
             let nearest = nearest_before(trail, number, joint);
-            let again = AGAIN * weight * (1.5 - nearest / breadth).clamp(0.0, 1.0);
+            let again = AGAIN * weight * (AGAIN_REACH - nearest / breadth).clamp(0.0, 1.0);
             for bend_deg in BENDS_DEG {
                 let bend_rad = bend_deg.to_radians();
                 let bent = bend_rad.abs() / FRAC_PI_4;
@@ -321,12 +323,6 @@ fn nearest_before(trail: &[Vec<State>], number: usize, place: Point) -> f64 {
         at = state.before;
     }
     nearest
-}
-
-fn median_depth(limbs: &Articulation, node: usize) -> f64 {
-    let mut depths: Vec<f64> = limbs.nodes[node].iter().map(|v| limbs.depth[*v]).collect();
-    depths.sort_by(f64::total_cmp);
-    depths.get(depths.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// At most `most` of some vertices, evenly among them.

@@ -13,22 +13,25 @@
 //! Cost: a second or two a pose. Limits: a limb that is hidden altogether is where it is least bent; limbs that look alike may be swapped.
 
 mod articulation;
+mod chain;
 mod comparison;
 mod hypotheses;
 mod order;
 mod search;
 
-use self::articulation::Articulation;
+use rayon::prelude::*;
+
+use self::articulation::{Articulation, median};
 use self::comparison::{BARE, Comparison, Layer};
 use self::hypotheses::Search;
-use self::search::{Finder, Fine};
+use self::search::{Finder, Fine, Put};
 use super::lattice::Lattice;
 use super::levels::LEVELS;
 use super::pair::Pair;
 use super::register::RegistrationError;
 use super::rigid::Rigid;
 use super::template::Template;
-use crate::appearance::{ByteImage, ChannelImage, PIXELS_PER_UNIT};
+use crate::appearance::{Appearance, ByteImage, ChannelImage, PIXELS_PER_UNIT};
 use crate::math::{Matrix, Point};
 
 /// The level whose blur figures are compared at.
@@ -42,6 +45,8 @@ const PATCH_STEPS: f64 = 2.2;
 const PATCH_OUTSIDE: f32 = 0.0;
 /// The levels that hypotheses are registered at.
 const REGISTERED: std::ops::Range<usize> = 1..3;
+/// The first of those that what was found is registered at, whole.
+const SETTLED: usize = 2;
 /// Chains longer than this are divided into parts of about as many bands: an arm bends, and may lie in front of one thing and behind another.
 const BANDS_A_PART: usize = 4;
 /// Vertices that differ less than this say how much larger the figure is in the pose.
@@ -86,8 +91,8 @@ pub(super) struct Sought {
 }
 
 impl Limbs {
-    /// `None` of an empty lattice. `levels` are the reference's levels.
-    pub(super) fn new(lattice: &Lattice, levels: &[ChannelImage]) -> Option<Self> {
+    /// `None` of an empty lattice.
+    pub(super) fn new(lattice: &Lattice, reference: &Appearance) -> Option<Self> {
         let articulation = Articulation::new(lattice)?;
         let mut part_of = vec![0; lattice.points.len()];
         let mut parts = 0;
@@ -100,15 +105,17 @@ impl Limbs {
             }
             parts += count;
         }
+        let blurred = |level: usize| reference.blurred(LEVELS[level].deviation_px);
+        let (compared, ordered) = rayon::join(|| blurred(COMPARED), || blurred(ORDERED));
         Some(Self {
             patches: Template::sampled(
                 lattice,
-                levels.get(COMPARED)?,
+                &compared,
                 PATCH_RADIUS * PIXELS_PER_UNIT,
                 (PATCH_STEPS, PATCH_OUTSIDE),
             ),
-            compared: ByteImage::new(levels.get(COMPARED)?, 0),
-            ordered: ByteImage::new(levels.get(ORDERED)?, 0),
+            compared: ByteImage::new(&compared, 0),
+            ordered: ByteImage::new(&ordered, 0),
             articulation,
             part_of,
             parts,
@@ -124,11 +131,11 @@ impl Limbs {
     pub(super) fn limb_of_parts(&self) -> Vec<Option<usize>> {
         let mut limbs = vec![None; self.parts];
         let mut count = 0;
-        for (chain, of) in self.articulation.chains.iter().enumerate() {
-            if chain == 0 || !self.articulation.below(chain).is_empty() {
+        for chain in 1..self.articulation.chains.len() {
+            if !self.articulation.below(chain).is_empty() {
                 continue;
             }
-            for &v in of.nodes.iter().flat_map(|node| &self.articulation.nodes[*node]) {
+            for v in self.articulation.vertices(chain) {
                 limbs[self.part_of[v]] = Some(count);
             }
             count += 1;
@@ -149,7 +156,8 @@ impl Limbs {
         let image = ByteImage::new(&pair.pose.blurred(LEVELS[COMPARED].deviation_px), 0);
         let chains = (&self.articulation.chain_of[..], self.articulation.chains.len());
         let comparison = Comparison::new(lattice, chains, &self.compared, &image);
-        let before = comparison.energy(&comparison.layers(places));
+        let layers = comparison.layers(places);
+        let before = comparison.energy(&layers);
         // A beginning that explains nothing says nothing of the size, either: drawings of a character are as large as one another in their own units.
         let scale = if before > HOPELESS {
             (pair.pose.scale() / pair.reference.scale()).clamp(1.0 / MOST_SCALE, MOST_SCALE)
@@ -173,26 +181,25 @@ impl Limbs {
             rigid: Rigid::new(lattice, form),
             levels: &levels,
         };
-        let given = finder.put(places.to_vec());
+        let given = Put {
+            places: places.to_vec(),
+            layers,
+            energy: before,
+        };
         let grown = if before > GOOD { finder.grown()? } else { None };
         // One may lead where the other does not; what explains far less leads nowhere.
-        let grown = grown.filter(|grown| grown.energy < FAR_WORSE * before);
-        let is_hopeless = grown.as_ref().is_some_and(|grown| before > FAR_WORSE * grown.energy);
-        let (from_given, from_grown) = rayon::join(
-            || {
-                if is_hopeless {
-                    Ok(None)
-                } else {
-                    finder.improved(given).map(Some)
-                }
-            },
-            || grown.map(|grown| finder.improved(grown)).transpose(),
-        );
-        let found = match (from_given?, from_grown?) {
-            (Some(given), Some(grown)) if grown.energy < given.energy => grown,
-            (Some(given), _) => given,
-            (None, Some(grown)) => grown,
-            (None, None) => finder.put(places.to_vec()),
+        let beginnings = match grown {
+            Some(grown) if grown.energy >= FAR_WORSE * before => vec![given],
+            Some(grown) if before > FAR_WORSE * grown.energy => vec![grown],
+            Some(grown) => vec![given, grown],
+            None => vec![given],
+        };
+        let improved: Vec<Put> = (beginnings.into_par_iter())
+            .map(|beginning| finder.improved(beginning))
+            .collect::<Result<_, RegistrationError>>()?;
+        let by_energy = |a: &Put, b: &Put| a.energy.total_cmp(&b.energy);
+        let Some(found) = improved.into_iter().min_by(by_energy) else {
+            return Err(RegistrationError::NoFigure);
         };
         let mut sought = Sought {
             places: found.places,
@@ -202,37 +209,41 @@ impl Limbs {
             overlap: 0.0,
             energies: [before, found.energy],
         };
+        let finest: Vec<ChannelImage> = (LEVELS[SETTLED..].par_iter())
+            .map(|level| pair.pose.blurred(level.deviation_px))
+            .collect();
+        let ordered = ByteImage::new(&finest[ORDERED - SETTLED], 0);
+        let parts = (&self.part_of[..], self.parts);
+        let in_order = Comparison::new(lattice, parts, &self.ordered, &ordered);
         // What lies in front is known better once everything is where it is seen, and the reverse.
         for _ in 0..2 {
             sought.places = pair.settled_from(
                 &finder.rigid,
                 &sought.places,
-                REGISTERED.end - 1,
+                (SETTLED, &finest),
                 templates,
                 &sought.is_hidden,
             )?;
-            self.put_in_order(pair, &mut sought);
+            self.put_in_order(lattice, &in_order, &mut sought);
         }
         sought.energies[1] = comparison.energy(&comparison.layers(&sought.places));
         Ok(sought)
     }
 
     /// Finds what lies in front, and what is hidden by it.
-    fn put_in_order(&self, pair: &Pair<'_>, sought: &mut Sought) {
-        let image = ByteImage::new(&pair.pose.blurred(LEVELS[ORDERED].deviation_px), 0);
-        let comparison = Comparison::new(pair.lattice, (&self.part_of, self.parts), &self.ordered, &image);
+    fn put_in_order(&self, lattice: &Lattice, comparison: &Comparison<'_>, sought: &mut Sought) {
         let layers = comparison.layers(&sought.places);
         sought.ranks = order::ranks(&layers);
         let front = front(&layers, &sought.ranks);
         sought.is_hidden = (sought.places.iter().enumerate())
             .map(|(v, place)| {
                 let own = self.part_of[v];
-                front[comparison.cell_at(*place)].is_some_and(|front| sought.ranks[front] > sought.ranks[own])
-                    && !self.touch(pair.lattice, v, front[comparison.cell_at(*place)])
+                front[comparison.cell_at(*place)]
+                    .is_some_and(|front| sought.ranks[front] > sought.ranks[own] && !self.touches(lattice, v, front))
             })
             .collect();
         let mut hang_together = vec![false; self.parts * self.parts];
-        for &[v, w] in &pair.lattice.edges {
+        for &[v, w] in &lattice.edges {
             let (a, b) = (self.part_of[v], self.part_of[w]);
             hang_together[a * self.parts + b] = true;
             hang_together[b * self.parts + a] = true;
@@ -242,12 +253,12 @@ impl Limbs {
             let mut pairs = (there.iter().enumerate()).flat_map(|(k, a)| there[..k].iter().map(move |b| (*a, *b)));
             pairs.any(|(a, b)| !hang_together[a * self.parts + b])
         });
-        sought.overlap = lies_over.count() as f64 / comparison.figure_cells() as f64;
+        sought.overlap = lies_over.count() as f64 / comparison.figure_cells as f64;
     }
 
     /// Whether a vertex is next to a part.
-    fn touch(&self, lattice: &Lattice, v: usize, part: Option<usize>) -> bool {
-        lattice.neighbours[v].iter().any(|w| Some(self.part_of[*w]) == part)
+    fn touches(&self, lattice: &Lattice, v: usize, part: usize) -> bool {
+        lattice.neighbours[v].iter().any(|w| self.part_of[*w] == part)
     }
 }
 
@@ -269,11 +280,9 @@ fn scale(lattice: &Lattice, places: &[Point], residuals: &[f32]) -> f64 {
         let rest = (lattice.points[a] - lattice.points[b]).norm();
         (rest > 0.0 && is_alike(a) && is_alike(b)).then(|| (places[a] - places[b]).norm() / rest)
     };
-    let mut ratios: Vec<f64> = lattice.edges.iter().filter_map(ratio).collect();
+    let ratios: Vec<f64> = lattice.edges.iter().filter_map(ratio).collect();
     if (ratios.len() as f64) < TELLING_SHARE * lattice.edges.len() as f64 || ratios.is_empty() {
         return 1.0;
     }
-    let middle = ratios.len() / 2;
-    let median = *ratios.select_nth_unstable_by(middle, f64::total_cmp).1;
-    median.clamp(1.0 / MOST_SCALE, MOST_SCALE)
+    median(&ratios).clamp(1.0 / MOST_SCALE, MOST_SCALE)
 }

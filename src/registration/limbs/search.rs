@@ -18,10 +18,10 @@ use super::hypotheses::{Hypothesis, Search, spread_out};
 use crate::appearance::{ByteImage, PIXELS_PER_UNIT, STEPS_PER_UNIT};
 use crate::math::{Matrix, Point, angle, rotation};
 use crate::registration::levels::Level;
-use crate::registration::pair::{DOUBT, Pair};
+use crate::registration::pair::Pair;
 use crate::registration::register::RegistrationError;
 use crate::registration::rigid::{Rigid, Targets};
-use crate::registration::template::{MOST_DIFFERENCE, Template, Window};
+use crate::registration::template::{Template, Window};
 
 /// By how much the energy has to fall for a hypothesis to be kept: less is noise.
 const CLEARLY: f64 = 0.003;
@@ -116,8 +116,7 @@ impl Finder<'_> {
                 layers[0] = self.comparison.layer(0, &places);
                 let chains: Vec<usize> = (1..self.limbs.chains.len()).collect();
                 self.grow(&chains, &mut places, &mut layers);
-                let settled = self.settled(&places)?;
-                Ok(self.put(self.registered(settled, &all)?))
+                Ok(self.put(self.registered(self.settled(&places, &all)?, &all)?))
             })
             .collect();
         let mut best: Option<Put> = None;
@@ -204,9 +203,12 @@ impl Finder<'_> {
         }
     }
 
-    /// The vertices a little more rigid than bands leave them.
-    fn settled(&self, places: &[Point]) -> Result<Vec<Point>, RegistrationError> {
-        let trust = vec![Matrix::identity(); places.len()];
+    /// The vertices `free` a little more rigid than bands leave them, the others held where they are.
+    fn settled(&self, places: &[Point], free: &[usize]) -> Result<Vec<Point>, RegistrationError> {
+        let mut trust = vec![Matrix::identity() * (HELD * SETTLING.0); places.len()];
+        for &v in free {
+            trust[v] = Matrix::identity();
+        }
         let targets = Targets { places, trust: &trust };
         Ok(self.rigid.solve(places, &targets, SETTLING.0, SETTLING.1)?)
     }
@@ -216,7 +218,7 @@ impl Finder<'_> {
         let spacing = self.pair.lattice.spacing;
         for fine in self.levels {
             let level = fine.level;
-            let floor = Matrix::identity() * (0.25 * fine.window.step * fine.window.step);
+            let floor = fine.window.floor();
             for _ in 0..level.iterations.min(3) {
                 let frames = self.rigid.frames(&places, 1);
                 let fits =
@@ -224,10 +226,7 @@ impl Finder<'_> {
                 let mut targets = places.clone();
                 let mut trust = vec![Matrix::identity() * (HELD * level.stiffness); places.len()];
                 for (fit, &v) in fits.iter().zip(free) {
-                    let confidence = f64::from(libm::expf(-fit.residual / (DOUBT * MOST_DIFFERENCE)));
-                    let inverse = (fit.covariance + floor).try_inverse().unwrap_or_else(Matrix::zeros);
-                    targets[v] += fit.displacement;
-                    trust[v] = inverse * (confidence * spacing * spacing);
+                    (targets[v], trust[v]) = fit.target(places[v], floor, spacing);
                 }
                 self.pair.pin(&self.rigid, &places, &mut targets, &mut trust);
                 let targets = Targets {
@@ -257,13 +256,13 @@ impl Finder<'_> {
         (sum / count.max(1) as f64).sqrt() < SAME * self.pair.lattice.spacing
     }
 
-    /// A chain put by its hypotheses, with what hangs on it; the one that explains most first.
+    /// A chain put by its hypotheses, with what hangs on it.
     fn with_chain(&self, chain: usize, now: &Put, gone: &[usize], most: usize) -> Vec<Put> {
         let below = self.limbs.below(chain);
         let leaves = |other: usize| other != chain && !below.contains(&other) && !gone.contains(&other);
         let others = self.comparison.least(&now.layers, leaves);
         let hypotheses = self.search.of_chain(chain, &now.places, &others, most);
-        let mut put: Vec<Put> = (hypotheses.into_par_iter())
+        (hypotheses.into_par_iter())
             .map(|hypothesis| {
                 let (mut places, mut layers) = (now.places.clone(), now.layers.clone());
                 for (v, place) in hypothesis.places {
@@ -272,8 +271,8 @@ impl Finder<'_> {
                 for &other in gone {
                     layers[other].fill(BARE);
                 }
-                for other in &below {
-                    layers[*other].fill(BARE);
+                for &other in &below {
+                    layers[other].fill(BARE);
                 }
                 layers[chain] = self.comparison.layer(chain, &places);
                 self.grow(&below, &mut places, &mut layers);
@@ -283,16 +282,17 @@ impl Finder<'_> {
                     layers,
                 }
             })
-            .collect();
-        put.sort_by(|a, b| a.energy.total_cmp(&b.energy));
-        put
+            .collect()
     }
 
-    /// The best of some placements of chains once they are registered, if it explains the pose clearly better than now.
-    fn better(&self, now: &Put, tried: &[Put], chains: &[usize]) -> Result<Option<Put>, RegistrationError> {
+    /// The best of the first few placements of chains once they are registered, if it explains the pose clearly better than now.
+    fn better(&self, now: &Put, mut made: Vec<Put>, chains: &[usize]) -> Result<Option<Put>, RegistrationError> {
+        made.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+        made.truncate(TRIED);
+        made.retain(|put| !self.is_same(now, &put.places, chains));
         let free = self.around(chains);
-        let registered: Vec<Result<Put, RegistrationError>> = (tried.par_iter())
-            .map(|put| Ok(self.put(self.registered(self.settled_around(&put.places, &free)?, &free)?)))
+        let registered: Vec<Result<Put, RegistrationError>> = (made.par_iter())
+            .map(|put| Ok(self.put(self.registered(self.settled(&put.places, &free)?, &free)?)))
             .collect();
         let mut best: Option<Put> = None;
         for put in registered {
@@ -302,16 +302,6 @@ impl Finder<'_> {
             }
         }
         Ok(best)
-    }
-
-    /// As [`Self::settled`], with all others held.
-    fn settled_around(&self, places: &[Point], free: &[usize]) -> Result<Vec<Point>, RegistrationError> {
-        let mut trust = vec![Matrix::identity() * (HELD * SETTLING.0); places.len()];
-        for &v in free {
-            trust[v] = Matrix::identity();
-        }
-        let targets = Targets { places, trust: &trust };
-        Ok(self.rigid.solve(places, &targets, SETTLING.0, SETTLING.1)?)
     }
 
     fn with_all_below(&self, chain: usize) -> Vec<usize> {
@@ -346,10 +336,8 @@ impl Finder<'_> {
                 if !tried_now.insert([chain, chain]) || self.is_explained(&now, chain) {
                     continue;
                 }
-                let mut tried = self.with_chain(chain, &now, &[], MADE);
-                tried.truncate(TRIED);
-                tried.retain(|put| !self.is_same(&now, &put.places, &moved));
-                if let Some(better) = self.better(&now, &tried, &moved)? {
+                let made = self.with_chain(chain, &now, &[], MADE);
+                if let Some(better) = self.better(&now, made, &moved)? {
                     now = better;
                     tried_now.clear();
                 }
@@ -360,14 +348,11 @@ impl Finder<'_> {
                     continue;
                 }
                 let moved = [first, second];
-                let mut tried = Vec::new();
-                for put in self.with_chain(first, &now, &[second], MADE_OF_PAIR[0]) {
-                    tried.extend(self.with_chain(second, &put, &[], MADE_OF_PAIR[1]));
-                }
-                tried.sort_by(|a, b| a.energy.total_cmp(&b.energy));
-                tried.truncate(TRIED);
-                tried.retain(|put| !self.is_same(&now, &put.places, &moved));
-                if let Some(better) = self.better(&now, &tried, &moved)? {
+                let made = self.with_chain(first, &now, &[second], MADE_OF_PAIR[0]);
+                let made = made
+                    .iter()
+                    .flat_map(|put| self.with_chain(second, put, &[], MADE_OF_PAIR[1]));
+                if let Some(better) = self.better(&now, made.collect(), &moved)? {
                     now = better;
                     tried_now.clear();
                 }
