@@ -2,6 +2,7 @@
 
 mod layered;
 mod natural_order;
+mod part_names;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -185,7 +186,7 @@ pub(super) fn plan(arguments: &Arguments) -> anyhow::Result<Plan> {
             };
             let taken: Vec<String> = poses.iter().map(|pose| pose.name.clone()).collect();
             poses.push(NewPose {
-                name: layered::free_name(&own, &taken),
+                name: part_names::free_name(&own, &taken),
                 source: source.clone(),
                 picture,
                 element: NewElement::Whole,

@@ -20,6 +20,13 @@ pub struct Picture {
     pub pixels_per_unit: f64,
 }
 
+impl Picture {
+    /// A place of the source in pixels, from the corner of pixel (0, 0).
+    pub(crate) fn to_pixels(&self, place: Point) -> Point {
+        (place - self.origin) * self.pixels_per_unit
+    }
+}
+
 impl std::fmt::Debug for Picture {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Picture")

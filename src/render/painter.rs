@@ -199,13 +199,13 @@ impl Painter {
         self.paint_within(positions, weights, texture_weights, rings)
     }
 
-    /// The same painter with these triangles of the mapping's mesh alone.
+    /// This painter with some triangles of the mapping's mesh alone.
     pub(super) fn of_triangles(mut self, triangles: Vec<[usize; 3]>) -> Self {
         self.triangles = triangles;
         self
     }
 
-    /// As [`Self::paint`], cut out by `rings` instead of the silhouette.
+    /// A frame as of [`Self::paint`], cut out by `rings` instead of the silhouette.
     pub(super) fn paint_within(
         &self,
         positions: &[Point],

@@ -69,7 +69,7 @@ impl Texture {
         Self::within(picture, &rings, samples_per_unit)
     }
 
-    /// The same of a shape that is given by closed polygons, which may cross one another.
+    /// The texture of `picture`, as of [`Self::new`], whose shape is given by closed polygons that may cross one another.
     #[must_use]
     pub(super) fn within<R: AsRef<[Point]>>(picture: &Picture, rings: &[R], samples_per_unit: f64) -> Self {
         let mut finest = Level::new(picture.width, picture.height, picture.pixels.clone());

@@ -9,8 +9,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::math::{Point, point};
-use crate::mesh::directed_edges;
+use crate::math::{Point, for_each_cell, point};
 use crate::pose::Mapping;
 
 /// Cells along the diagonal of a pose.
@@ -34,15 +33,10 @@ impl Division {
         let triangles = mapping.poses.topology().triangles();
         let (piece_of, count) = pieces(mapping);
         let mut neighbours = vec![false; count * count];
-        let mut by_edge = BTreeMap::new();
-        for (t, triangle) in triangles.iter().enumerate() {
-            for (a, b) in directed_edges(*triangle) {
-                if let Some(other) = by_edge.insert((a.min(b), a.max(b)), t) {
-                    let (own, other): (usize, usize) = (piece_of[t], piece_of[other]);
-                    neighbours[own * count + other] = true;
-                    neighbours[other * count + own] = true;
-                }
-            }
+        for (t, other) in mapping.poses.topology().adjacent_triangles() {
+            let (own, other) = (piece_of[t], piece_of[other]);
+            neighbours[own * count + other] = true;
+            neighbours[other * count + own] = true;
         }
         let mut in_front: Vec<Vec<i8>> = (0..mapping.poses.len())
             .map(|pose| match mapping.overlaps.depth(pose) {
@@ -141,7 +135,8 @@ fn can_unite(in_front: &[i8], count: usize, a: usize, b: usize) -> bool {
 
 /// By triangle, its piece; and how many there are.
 fn pieces(mapping: &Mapping) -> (Vec<usize>, usize) {
-    let triangles = mapping.poses.topology().triangles();
+    let topology = mapping.poses.topology();
+    let (triangles, around) = (topology.triangles(), topology.neighbours());
     let overlaps = &mapping.overlaps;
     // Depths differ by parts of a whole within what is equally near.
     let kind = |t: usize| -> (Option<usize>, Vec<u64>) {
@@ -149,12 +144,6 @@ fn pieces(mapping: &Mapping) -> (Vec<usize>, usize) {
         (overlaps.triangle_limb.get(t).copied().flatten(), depths.collect())
     };
     let kinds: Vec<_> = (0..triangles.len()).map(kind).collect();
-    let mut by_edge = BTreeMap::new();
-    for (t, triangle) in triangles.iter().enumerate() {
-        for (a, b) in directed_edges(*triangle) {
-            by_edge.insert((a, b), t);
-        }
-    }
     let mut piece_of = vec![usize::MAX; triangles.len()];
     let mut count = 0;
     for start in 0..triangles.len() {
@@ -164,11 +153,8 @@ fn pieces(mapping: &Mapping) -> (Vec<usize>, usize) {
         piece_of[start] = count;
         let mut waiting = vec![start];
         while let Some(t) = waiting.pop() {
-            for (a, b) in directed_edges(triangles[t]) {
-                if let Some(&other) = by_edge.get(&(b, a))
-                    && piece_of[other] == usize::MAX
-                    && kinds[other] == kinds[t]
-                {
+            for &other in around[t].iter().flatten() {
+                if piece_of[other] == usize::MAX && kinds[other] == kinds[t] {
                     piece_of[other] = count;
                     waiting.push(other);
                 }
@@ -201,7 +187,7 @@ fn relations(
     let mut cells: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); size[0] * size[1]];
     for (t, triangle) in triangles.iter().enumerate() {
         let corners = triangle.map(|v| (positions[v] - low) / side);
-        crate::math::for_each_cell(corners, size, |cell, _| {
+        for_each_cell(corners, size, |cell, _| {
             let nearest = cells[cell].entry(piece_of[t]).or_insert(depth[t]);
             *nearest = nearest.max(depth[t]);
         });

@@ -61,7 +61,7 @@ impl Pictures<'_> {
         let positions = self.mapping.poses.positions();
         let size = [picture.width, picture.height];
         for &t in painted {
-            let corners = triangles[t].map(|v| in_pixels(&picture, positions[pose][v]));
+            let corners = triangles[t].map(|v| picture.to_pixels(positions[pose][v]));
             for_each_cell(corners, size, |pixel, [u, v]| {
                 if !hidden[pixel] || picture.pixels[pixel] != [0; 4] {
                     return;
@@ -69,7 +69,7 @@ impl Pictures<'_> {
                 for other in &others {
                     let hidden_there = &self.hidden[region][*other];
                     let (from, on) = self.drawings[*other];
-                    let [a, b, c] = triangles[t].map(|v| in_pixels(&from.picture, positions[on][v]));
+                    let [a, b, c] = triangles[t].map(|v| from.picture.to_pixels(positions[on][v]));
                     let place = a + (b - a) * u + (c - a) * v;
                     let Some(there) = pixel_at(&from.picture, place) else {
                         continue;
@@ -102,7 +102,7 @@ impl Pictures<'_> {
         let mut hidden: Option<Vec<bool>> = None;
         for other in in_front {
             let rings: Vec<Vec<Point>> = (self.rims_at(other, pose).into_iter())
-                .map(|ring| ring.into_iter().map(|p| in_pixels(&of.picture, p)).collect())
+                .map(|ring| ring.into_iter().map(|p| of.picture.to_pixels(p)).collect())
                 .collect();
             let coverage = Coverage::of(rings.iter().map(Vec::as_slice), width, height);
             let hidden = hidden.get_or_insert_with(|| vec![false; width * height]);
@@ -133,10 +133,6 @@ fn widened(mask: &[bool], width: usize, by: usize) -> Vec<bool> {
         }
     }
     both
-}
-
-fn in_pixels(picture: &Picture, place: Point) -> Point {
-    (place - picture.origin) * picture.pixels_per_unit
 }
 
 /// The pixel that holds a place in pixels.
