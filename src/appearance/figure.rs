@@ -53,6 +53,12 @@ impl Appearance {
         Self::of(&drawing.outline, &drawing.picture)
     }
 
+    /// As [`Appearance::new`], with the openings of the outline outside, too: a ring that an arm closes has paper in it.
+    #[must_use]
+    pub fn opened(drawing: &Drawing) -> Self {
+        Self::of(&drawing.outline.opened(), &drawing.picture)
+    }
+
     /// What `picture` shows within `outline`.
     #[must_use]
     pub fn of(outline: &Outline, picture: &Picture) -> Self {

@@ -150,6 +150,15 @@ impl Outline {
         }
     }
 
+    /// The outline with its openings as holes, after those that it has.
+    #[must_use]
+    pub fn opened(&self) -> Self {
+        Self {
+            rings: self.rings.iter().chain(&self.openings).cloned().collect(),
+            openings: Vec::new(),
+        }
+    }
+
     /// The outline without its holes.
     #[must_use]
     pub fn filled(&self) -> Self {

@@ -15,8 +15,9 @@ use rayon::prelude::*;
 
 use super::PipelineError;
 use super::boundaries::Matched;
-use super::drawn::{Known, RegistrationGuide, appearances, match_by_drawing};
+use super::drawn::{Known, RegistrationGuide, match_by_drawing};
 use super::spec::{LayerSpec, OverlapSearch};
+use crate::appearance::Appearance;
 use crate::input::Drawing;
 use crate::matching::MatchOptions;
 use crate::outline::Outline;
@@ -66,7 +67,9 @@ pub(super) fn found(
     if shorter.is_empty() {
         return Ok(None);
     }
-    let appearances = appearances(drawings);
+    let appearances: Vec<Arc<Appearance>> = (drawings.par_iter())
+        .map(|drawing| Arc::new(Appearance::opened(drawing)))
+        .collect();
     if !appearances[template].is_drawn() {
         return Ok(None);
     }

@@ -108,6 +108,30 @@ impl Articulation {
             .flat_map(|node| self.nodes[*node].iter().copied())
     }
 
+    /// A chain and those that continue it, in order.
+    pub(super) fn line(&self, chain: usize) -> Vec<usize> {
+        let mut line = vec![chain];
+        while let Some(&last) = line.last() {
+            let next = (last + 1..self.chains.len())
+                .find(|other| self.chains[*other].continues && self.chains[*other].parent == Some(last));
+            match next {
+                Some(next) => line.push(next),
+                None => break,
+            }
+        }
+        line
+    }
+
+    /// The lines of chains that nothing else hangs on.
+    pub(super) fn ends(&self) -> Vec<Vec<usize>> {
+        (1..self.chains.len())
+            .filter(|chain| !self.chains[*chain].continues)
+            .map(|chain| (self.below(chain).len(), self.line(chain)))
+            .filter(|(below, line)| below + 1 == line.len())
+            .map(|(_, line)| line)
+            .collect()
+    }
+
     /// The chains that hang on one, directly or not, parents first.
     pub(super) fn below(&self, chain: usize) -> Vec<usize> {
         let hangs = |&other: &usize| {

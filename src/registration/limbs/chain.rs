@@ -5,6 +5,10 @@ use std::collections::VecDeque;
 use crate::math::Point;
 use crate::registration::lattice::Lattice;
 
+/// Chains of more bands than this are cut into pieces of about so many: a snake may be found as far as its neck, and lost beyond.
+const MOST_BANDS: usize = 14;
+const BANDS_A_PIECE: f64 = 8.0;
+
 /// Bands that follow one another.
 #[derive(Debug, Clone)]
 pub(super) struct Chain {
@@ -12,6 +16,8 @@ pub(super) struct Chain {
     pub(super) nodes: Vec<usize>,
     /// The chain that it hangs on; `None` of the root.
     pub(super) parent: Option<usize>,
+    /// Whether it goes on where the one that it hangs on was cut.
+    pub(super) continues: bool,
 }
 
 /// The chains of a tree of bands; those that `firsts` begin are chains of their own.
@@ -20,6 +26,7 @@ pub(super) fn chains(parents: &[usize], firsts: &[usize]) -> Vec<Chain> {
     let mut chains = vec![Chain {
         nodes: vec![0],
         parent: None,
+        continues: false,
     }];
     let mut waiting: VecDeque<(usize, usize)> = children(0).map(|child| (child, 0)).collect();
     while let Some((first, parent)) = waiting.pop_front() {
@@ -31,18 +38,30 @@ pub(super) fn chains(parents: &[usize], firsts: &[usize]) -> Vec<Chain> {
                 _ => break,
             }
         }
-        let number = chains.len();
-        for &node in &nodes {
-            waiting.extend(
-                children(node)
-                    .filter(|child| !nodes.contains(child))
-                    .map(|child| (child, number)),
-            );
+        let count = if nodes.len() > MOST_BANDS {
+            (nodes.len() as f64 / BANDS_A_PIECE).round() as usize
+        } else {
+            1
+        };
+        let end_of = |piece: usize| piece * nodes.len() / count;
+        let mut parent = parent;
+        for piece in 0..count {
+            let own = &nodes[end_of(piece)..end_of(piece + 1)];
+            let number = chains.len();
+            for &node in own {
+                waiting.extend(
+                    children(node)
+                        .filter(|child| !nodes.contains(child))
+                        .map(|child| (child, number)),
+                );
+            }
+            chains.push(Chain {
+                nodes: own.to_vec(),
+                parent: Some(parent),
+                continues: piece > 0,
+            });
+            parent = number;
         }
-        chains.push(Chain {
-            nodes,
-            parent: Some(parent),
-        });
     }
     chains
 }

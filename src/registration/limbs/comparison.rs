@@ -35,6 +35,8 @@ pub(super) struct Comparison<'a> {
     pub(super) figure: Vec<bool>,
     /// How many these are, at least 1.
     pub(super) figure_cells: usize,
+    /// How many the reference's figure has, at least 1.
+    reference_cells: usize,
     /// By part, the triangles whose last corner, from the root on, it has.
     triangles: Vec<Vec<[usize; 3]>>,
 }
@@ -48,9 +50,8 @@ impl<'a> Comparison<'a> {
         pose: &'a ByteImage,
     ) -> Self {
         let size = pose.size().map(|length| length.div_ceil(CELL_PX));
-        let figure: Vec<bool> = (0..size[0] * size[1])
-            .map(|cell| pose.pixel(middle(cell, size[0])).coverage() >= INSIDE)
-            .collect();
+        let figure = figure_of(pose);
+        let count = |figure: &[bool]| figure.iter().filter(|inside| **inside).count().max(1);
         let mut triangles = vec![Vec::new(); parts];
         for triangle in &lattice.triangles {
             let part = triangle.iter().map(|v| part_of[*v]).max().unwrap_or(0);
@@ -61,10 +62,16 @@ impl<'a> Comparison<'a> {
             reference,
             pose,
             size,
-            figure_cells: figure.iter().filter(|inside| **inside).count().max(1),
+            figure_cells: count(&figure),
+            reference_cells: count(&figure_of(reference)),
             figure,
             triangles,
         }
+    }
+
+    /// How much larger the reference's figure has to be at least to have the pose's area: what is hidden there has none.
+    pub(super) fn least_scale(&self) -> f64 {
+        (self.figure_cells as f64 / self.reference_cells as f64).sqrt()
     }
 
     /// The cell that a place is in, or the nearest one.
@@ -122,6 +129,14 @@ impl<'a> Comparison<'a> {
         let sum = inside as f64 + OUTSIDE_SHARE * f64::from(MOST) * outside as f64;
         sum / (f64::from(STEPS_PER_UNIT) * self.figure_cells as f64)
     }
+}
+
+/// By cell, whether its middle is in the figure.
+fn figure_of(image: &ByteImage) -> Vec<bool> {
+    let size = image.size().map(|length| length.div_ceil(CELL_PX));
+    (0..size[0] * size[1])
+        .map(|cell| image.pixel(middle(cell, size[0])).coverage() >= INSIDE)
+        .collect()
 }
 
 /// The middle of a cell, in working pixels.

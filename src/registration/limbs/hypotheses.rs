@@ -97,10 +97,10 @@ struct Rest {
 }
 
 impl Search<'_> {
-    /// At most `most` hypotheses of a chain that hangs on others at `places`; `others` is what these show.
-    pub(super) fn of_chain(&self, chain: usize, places: &[Point], others: &Layer, most: usize) -> Vec<Hypothesis> {
+    /// At most `most` hypotheses of chains that continue one another and hang on others at `places`; `others` is what these show.
+    pub(super) fn of_line(&self, line: &[usize], places: &[Point], others: &Layer, most: usize) -> Vec<Hypothesis> {
         let limbs = self.limbs;
-        let nodes = &limbs.chains[chain].nodes;
+        let nodes: Vec<usize> = (line.iter().flat_map(|chain| &limbs.chains[*chain].nodes).copied()).collect();
         let Some((&first, rest_of_nodes)) = nodes.split_first() else {
             return Vec::new();
         };
@@ -109,7 +109,7 @@ impl Search<'_> {
             .iter()
             .map(|node| spread_out(&limbs.nodes[*node], SAMPLES))
             .collect();
-        let length = limbs.vertices(chain).count() as f64;
+        let length = line.iter().map(|chain| limbs.vertices(*chain).count()).sum::<usize>() as f64;
         let (root, root_turn_rad) = self.hold(first, places);
         let width = (WIDTH + WIDTH_A_BAND * nodes.len()).min(MOST_WIDTH);
         let mut trail: Vec<Vec<State>> =
@@ -119,7 +119,7 @@ impl Search<'_> {
             let states = self.continued(&trail, before, (node, &bands[k + 1]), &rest, width);
             trail.push(states);
         }
-        self.distinct(nodes, &trail, most)
+        self.distinct(&nodes, &trail, most)
     }
 
     /// What is left to be explained.

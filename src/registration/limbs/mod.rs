@@ -4,7 +4,8 @@
 //!
 //! 1. The limbs of the open figure (`articulation`).
 //! 2. What the figure explains of the pose wherever it is put (`comparison`).
-//! 3. Hypotheses for every limb (`hypotheses`), and the search among them (`search`).
+//! 3. Hypotheses for every limb (`hypotheses`), a beginning that is grown from them where outlines say nothing (`growth`), and the search among them
+//!    (`search`).
 //! 4. Which part lies in front (`order`); what is hidden is then no longer compared, and the whole is registered once more.
 //!
 //! Source: Sykora, Dingliana and Collins 2009 for the registration; Felzenszwalb and Huttenlocher 2005, "Pictorial structures for object recognition", for
@@ -15,6 +16,7 @@
 mod articulation;
 mod chain;
 mod comparison;
+mod growth;
 mod hypotheses;
 mod order;
 mod search;
@@ -54,6 +56,8 @@ const ALIKE: f32 = 0.2;
 /// By how much that may be, and the share of edges that has to say so.
 const MOST_SCALE: f64 = 1.4;
 const TELLING_SHARE: f64 = 0.2;
+/// Where a drawing does not say how large its figure is, it is grown at so many times the size that an open figure of its area has.
+const GROWN_SCALES: [f64; 4] = [1.0, 1.06, 1.13, 1.2];
 /// Beginnings that leave less energy than this need no other.
 const GOOD: f64 = 0.2;
 /// Of two beginnings, one that leaves this many times what the other leaves is not followed.
@@ -130,15 +134,10 @@ impl Limbs {
     /// By part, the chain that it belongs to if nothing hangs on that; `None` of the trunk. Numbered from 0.
     pub(super) fn limb_of_parts(&self) -> Vec<Option<usize>> {
         let mut limbs = vec![None; self.parts];
-        let mut count = 0;
-        for chain in 1..self.articulation.chains.len() {
-            if !self.articulation.below(chain).is_empty() {
-                continue;
+        for (limb, line) in self.articulation.ends().iter().enumerate() {
+            for v in line.iter().flat_map(|chain| self.articulation.vertices(*chain)) {
+                limbs[self.part_of[v]] = Some(limb);
             }
-            for v in self.articulation.vertices(chain) {
-                limbs[self.part_of[v]] = Some(count);
-            }
-            count += 1;
         }
         limbs
     }
@@ -167,8 +166,7 @@ impl Limbs {
         let levels: Vec<Fine<'_>> = (REGISTERED.zip(&templates[REGISTERED]))
             .map(|(level, template)| Fine::new(&LEVELS[level], template, pair))
             .collect();
-        let form = Matrix::identity() * scale;
-        let finder = Finder {
+        let finder_at = |scale: f64| Finder {
             pair,
             limbs: &self.articulation,
             comparison: &comparison,
@@ -178,7 +176,7 @@ impl Limbs {
                 patches: &self.patches,
                 scale,
             },
-            rigid: Rigid::new(lattice, form),
+            rigid: Rigid::new(lattice, Matrix::identity() * scale),
             levels: &levels,
         };
         let given = Put {
@@ -186,24 +184,38 @@ impl Limbs {
             layers,
             energy: before,
         };
-        let grown = if before > GOOD { finder.grown()? } else { None };
+        let grown = if before > GOOD {
+            let drawn = std::iter::once(finder_at(scale));
+            let hidden = GROWN_SCALES
+                .iter()
+                .filter(|_| before > HOPELESS)
+                .map(|factor| finder_at(factor * comparison.least_scale()));
+            let finders: Vec<Finder<'_>> = drawn.chain(hidden).collect();
+            growth::grown(finders)?
+        } else {
+            None
+        };
+        let given = (finder_at(scale), given);
         // One may lead where the other does not; what explains far less leads nowhere.
         let beginnings = match grown {
-            Some(grown) if grown.energy >= FAR_WORSE * before => vec![given],
-            Some(grown) if before > FAR_WORSE * grown.energy => vec![grown],
+            Some(grown) if grown.1.energy >= FAR_WORSE * before => vec![given],
+            Some(grown) if before > FAR_WORSE * grown.1.energy => vec![grown],
             Some(grown) => vec![given, grown],
             None => vec![given],
         };
-        let improved: Vec<Put> = (beginnings.into_par_iter())
-            .map(|beginning| finder.improved(beginning))
+        let improved: Vec<(Finder<'_>, Put)> = (beginnings.into_par_iter())
+            .map(|(finder, beginning)| {
+                let put = finder.improved(beginning)?;
+                Ok((finder, put))
+            })
             .collect::<Result<_, RegistrationError>>()?;
-        let by_energy = |a: &Put, b: &Put| a.energy.total_cmp(&b.energy);
-        let Some(found) = improved.into_iter().min_by(by_energy) else {
+        let by_energy = |a: &(Finder<'_>, Put), b: &(Finder<'_>, Put)| a.1.energy.total_cmp(&b.1.energy);
+        let Some((finder, found)) = improved.into_iter().min_by(by_energy) else {
             return Err(RegistrationError::NoFigure);
         };
         let mut sought = Sought {
             places: found.places,
-            form,
+            form: Matrix::identity() * finder.search.scale,
             ranks: Vec::new(),
             is_hidden: vec![false; lattice.points.len()],
             overlap: 0.0,

@@ -1,10 +1,9 @@
 //! The limbs put where they explain the pose.
 //!
-//! A registration that began with the outlines -> places of all vertices under which the figure may lie over itself.
+//! A beginning -> places of all vertices under which the figure may lie over itself.
 //!
-//! 1. A second beginning, for outlines that say nothing: the root wherever its patches fit best, then chain after chain by its best hypothesis.
-//! 2. Of both the one that explains the pose better. Then, again and again, every chain that is not explained is sought anew with what hangs on it, alone and
-//!    in pairs (legs that are swapped); the best hypotheses are registered where they lie, and one is kept if it explains the pose clearly better.
+//! Again and again, every chain that is not explained is sought anew with what hangs on it, alone and in pairs (legs that are swapped); the best
+//! hypotheses are registered where they lie, and one is kept if it explains the pose clearly better.
 //!
 //! What explains a pose is the whole picture ([`Comparison::energy`]): a hypothesis gains nothing where another limb explains the same.
 
@@ -14,9 +13,9 @@ use rayon::prelude::*;
 
 use super::articulation::Articulation;
 use super::comparison::{BARE, CELL_PX, Comparison, Layer};
-use super::hypotheses::{Hypothesis, Search, spread_out};
+use super::hypotheses::Search;
 use crate::appearance::{ByteImage, PIXELS_PER_UNIT, STEPS_PER_UNIT};
-use crate::math::{Matrix, Point, angle, rotation};
+use crate::math::{Matrix, Point};
 use crate::registration::levels::Level;
 use crate::registration::pair::Pair;
 use crate::registration::register::RegistrationError;
@@ -46,14 +45,6 @@ const EXPLAINED: f64 = 0.2;
 /// Chains are tried in pairs where they come this near to one another, in spacings, and neither has more than so many times the other's vertices.
 const PAIR_REACH: f64 = 3.0;
 const PAIR_SIZES: f64 = 2.5;
-/// The root: places that go on, directions that are tried, its vertices that are compared, and what a radian of turn costs each.
-const ROOTS: usize = 3;
-const ROOT_TURNS: usize = 20;
-const ROOT_SAMPLES: usize = 24;
-const ROOT_TURN_COST: f64 = 0.02;
-/// Roots are apart by this many spacings, or this angle.
-const ROOTS_APART: (f64, f64) = (2.5, 0.7);
-
 /// A level with what is compared at it.
 pub(super) struct Fine<'a> {
     pub(super) level: &'a Level,
@@ -103,108 +94,26 @@ impl Finder<'_> {
         }
     }
 
-    /// The figure grown from its root, the best of some.
-    pub(super) fn grown(&self) -> Result<Option<Put>, RegistrationError> {
-        let all: Vec<usize> = (0..self.limbs.node_of.len()).collect();
-        let grown: Vec<Result<Put, RegistrationError>> = (self.roots().into_par_iter())
-            .map(|root| {
-                let mut places = vec![Point::zeros(); all.len()];
-                for (v, place) in root.places {
-                    places[v] = place;
-                }
-                let mut layers = vec![vec![BARE; self.comparison.figure.len()]; self.limbs.chains.len()];
-                layers[0] = self.comparison.layer(0, &places);
-                let chains: Vec<usize> = (1..self.limbs.chains.len()).collect();
-                self.grow(&chains, &mut places, &mut layers);
-                Ok(self.put(self.registered(self.settled(&places, &all)?, &all)?))
-            })
-            .collect();
-        let mut best: Option<Put> = None;
-        for put in grown {
-            let put = put?;
-            if best.as_ref().is_none_or(|best| put.energy < best.energy) {
-                best = Some(put);
-            }
-        }
-        Ok(best)
-    }
-
-    /// The likeliest places of the root's band.
-    fn roots(&self) -> Vec<Hypothesis> {
-        let (limbs, points) = (self.limbs, &self.pair.lattice.points);
-        let band = &limbs.nodes[0];
-        let middle = band.iter().map(|v| points[*v]).sum::<Point>() / band.len().max(1) as f64;
-        let samples = spread_out(band, ROOT_SAMPLES);
-        let spacing = self.pair.lattice.spacing;
-        let [width, height] = self.search.comparison.pose.size();
-        let along = |length: usize| (0..(length as f64 / spacing) as usize).map(move |k| (k as f64 + 0.5) * spacing);
-        let middles: Vec<Point> = (along(height).flat_map(|y| along(width).map(move |x| Point::new(x, y))))
-            .filter(|p| self.comparison.figure[self.comparison.cell_at(*p)])
-            .collect();
-        let tried: Vec<(f64, Point, f64)> = (middles.par_iter())
-            .flat_map_iter(|&place| {
-                let samples = &samples;
-                (0..ROOT_TURNS).map(move |turn| {
-                    let turn_rad = angle::wrap(std::f64::consts::TAU * turn as f64 / ROOT_TURNS as f64);
-                    let frame = rotation(turn_rad) * self.search.scale;
-                    let differs = samples.iter().map(|v| {
-                        let place = place + frame * (points[*v] - middle);
-                        f64::from(
-                            self.search
-                                .patches
-                                .difference_at(self.comparison.pose, *v, place, &frame),
-                        )
-                    });
-                    let cost = differs.sum::<f64>() / samples.len().max(1) as f64 + ROOT_TURN_COST * turn_rad.abs();
-                    (cost, place, turn_rad)
-                })
-            })
-            .collect();
-        let mut order: Vec<usize> = (0..tried.len()).collect();
-        order.sort_by(|a, b| tried[*a].0.total_cmp(&tried[*b].0));
-        let mut roots: Vec<(f64, Point, f64)> = Vec::new();
-        for k in order {
-            let (_, place, turn_rad) = tried[k];
-            let is_known = roots.iter().any(|(_, other, other_rad)| {
-                (other - place).norm() < ROOTS_APART.0 * spacing
-                    && angle::wrap(other_rad - turn_rad).abs() < ROOTS_APART.1
-            });
-            if !is_known {
-                roots.push(tried[k]);
-                if roots.len() == ROOTS {
-                    break;
-                }
-            }
-        }
-        (roots.into_iter())
-            .map(|(_, place, turn_rad)| {
-                let frame = rotation(turn_rad) * self.search.scale;
-                let places = band
-                    .iter()
-                    .map(|v| (*v, place + frame * (points[*v] - middle)))
-                    .collect();
-                Hypothesis { places }
-            })
-            .collect()
-    }
-
-    /// Puts chains by their best hypotheses, one after another.
-    fn grow(&self, chains: &[usize], places: &mut [Point], layers: &mut [Layer]) {
+    /// Puts chains by their best hypotheses, one after another; those that continue another are put with that.
+    pub(super) fn grow(&self, chains: &[usize], places: &mut [Point], layers: &mut [Layer]) {
         for chain in chains {
             layers[*chain].fill(BARE);
         }
-        for &chain in chains {
+        for &chain in chains.iter().filter(|chain| !self.limbs.chains[**chain].continues) {
             let others = self.comparison.least(layers, |_| true);
-            let best = self.search.of_chain(chain, places, &others, 1).into_iter().next();
+            let line = self.limbs.line(chain);
+            let best = self.search.of_line(&line, places, &others, 1).into_iter().next();
             for (v, place) in best.into_iter().flat_map(|best| best.places) {
                 places[v] = place;
             }
-            layers[chain] = self.comparison.layer(chain, places);
+            for chain in line {
+                layers[chain] = self.comparison.layer(chain, places);
+            }
         }
     }
 
     /// The vertices `free` a little more rigid than bands leave them, the others held where they are.
-    fn settled(&self, places: &[Point], free: &[usize]) -> Result<Vec<Point>, RegistrationError> {
+    pub(super) fn settled(&self, places: &[Point], free: &[usize]) -> Result<Vec<Point>, RegistrationError> {
         let mut trust = vec![Matrix::identity() * (HELD * SETTLING.0); places.len()];
         for &v in free {
             trust[v] = Matrix::identity();
@@ -214,7 +123,7 @@ impl Finder<'_> {
     }
 
     /// The vertices `free` registered, the others held where they are.
-    fn registered(&self, mut places: Vec<Point>, free: &[usize]) -> Result<Vec<Point>, RegistrationError> {
+    pub(super) fn registered(&self, mut places: Vec<Point>, free: &[usize]) -> Result<Vec<Point>, RegistrationError> {
         let spacing = self.pair.lattice.spacing;
         for fine in self.levels {
             let level = fine.level;
@@ -258,10 +167,12 @@ impl Finder<'_> {
 
     /// A chain put by its hypotheses, with what hangs on it.
     fn with_chain(&self, chain: usize, now: &Put, gone: &[usize], most: usize) -> Vec<Put> {
-        let below = self.limbs.below(chain);
-        let leaves = |other: usize| other != chain && !below.contains(&other) && !gone.contains(&other);
+        let line = self.limbs.line(chain);
+        let mut below = self.limbs.below(chain);
+        below.retain(|other| !line.contains(other));
+        let leaves = |other: usize| !line.contains(&other) && !below.contains(&other) && !gone.contains(&other);
         let others = self.comparison.least(&now.layers, leaves);
-        let hypotheses = self.search.of_chain(chain, &now.places, &others, most);
+        let hypotheses = self.search.of_line(&line, &now.places, &others, most);
         (hypotheses.into_par_iter())
             .map(|hypothesis| {
                 let (mut places, mut layers) = (now.places.clone(), now.layers.clone());
@@ -274,7 +185,9 @@ impl Finder<'_> {
                 for &other in &below {
                     layers[other].fill(BARE);
                 }
-                layers[chain] = self.comparison.layer(chain, &places);
+                for &chain in &line {
+                    layers[chain] = self.comparison.layer(chain, &places);
+                }
                 self.grow(&below, &mut places, &mut layers);
                 Put {
                     energy: self.comparison.energy(&layers),
@@ -366,8 +279,7 @@ impl Finder<'_> {
 
     /// Chains at ends that are near one another and about as large, both ways round.
     fn pairs(&self, now: &Put) -> Vec<(usize, usize)> {
-        let count = self.limbs.chains.len();
-        let ends: Vec<usize> = (1..count).filter(|chain| self.limbs.below(*chain).is_empty()).collect();
+        let ends: Vec<usize> = self.limbs.ends().iter().map(|line| line[0]).collect();
         let reach = PAIR_REACH * self.pair.lattice.spacing;
         let is_pair = |a: usize, b: usize| {
             let size = |chain: usize| self.limbs.vertices(chain).count() as f64;
