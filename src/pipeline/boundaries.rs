@@ -73,7 +73,7 @@ impl Boundaries {
                         drawings,
                         &mut outlines,
                         &appearances,
-                        &known,
+                        (&known, &[]),
                         before.and_then(|before| before.guide.as_ref()),
                         options,
                     )

@@ -99,13 +99,14 @@ impl Known {
     }
 }
 
-/// Matches all rings and registers the interiors; what of that `before` has is not made again.
+/// Matches all rings and registers the interiors; what of that `before` has is not made again. By pose, `pinned` has pairs of places, of the reference and of the pose, that
+/// are known beside what `known` says; none at all is an empty list.
 pub(super) fn match_by_drawing(
     names: &[String],
     drawings: &[Arc<Drawing>],
     outlines: &mut [Outline],
     appearances: &[Arc<Appearance>],
-    known: &Known,
+    (known, pinned): (&Known, &[Vec<[Point; 2]>]),
     before: Option<&RegistrationGuide>,
     mut options: MatchOptions,
 ) -> Result<(Matched, RegistrationGuide), PipelineError> {
@@ -132,6 +133,8 @@ pub(super) fn match_by_drawing(
             let certain = places
                 .iter()
                 .filter_map(|at| Some(Pin::certain(at[reference]?, at[pose]?)));
+            let pinned = pinned.get(pose).into_iter().flatten();
+            let certain = certain.chain(pinned.map(|[from, to]| Pin::certain(*from, *to)));
             let named = named_pairs(&drawings[reference], &drawings[pose]).into_iter();
             certain.chain(named.map(|[from, to]| Pin::likely(from, to))).collect()
         })

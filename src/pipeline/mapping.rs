@@ -91,10 +91,7 @@ pub(super) fn map_drawn(
         notes.extend(note_on_units(&names, drawings));
     }
     check_hole_counts(&names, drawings)?;
-    let landmarks = landmarks::sorted(layer, drawings)?;
-
-    let known = Known::of(&landmarks);
-    let mut found = overlapping::found(layer, drawings, &known)?;
+    let mut found = overlapping::found(layer, drawings)?;
     while let Some(overlapping) = found {
         let mapped = map_overlapping(layer, drawings, &overlapping, notes.clone(), begins)?;
         // A mesh that winds around one of its vertices twice cannot be blended.
@@ -108,6 +105,8 @@ pub(super) fn map_drawn(
         // What was found in these poses does not cover them: they are mapped as ever.
         found = overlapping.without(&uncovered);
     }
+    let landmarks = landmarks::sorted(layer, drawings)?;
+    let known = Known::of(&landmarks);
     let boundaries = match before.filter(|before| before.serve(layer, &known)) {
         Some(same) => Arc::clone(same),
         None => Arc::new(Boundaries::new(

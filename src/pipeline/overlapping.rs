@@ -3,7 +3,8 @@
 //! Drawings of a layer -> which of them lie over themselves, and where the open ones' mesh is in them.
 //!
 //! 1. Where parts lie over one another the outline is shorter, for the same area, than where all are apart. The drawing with the longest one is the *open* one that the others are
-//!    compared with; those whose outline is clearly shorter may lie over themselves. Where none is, nothing of this costs anything.
+//!    compared with; those whose outline is clearly shorter may lie over themselves, and those whose landmarks say so: they come in another order, or lie inside.
+//!    Where there are none, nothing of this costs anything.
 //! 2. The limbs of the open drawing are sought in these ([`crate::registration`]). One lies over itself if that explains it clearly better, and parts that do not hang together
 //!    then lie on the same place.
 //!
@@ -13,13 +14,14 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::PipelineError;
 use super::boundaries::Matched;
 use super::drawn::{Known, RegistrationGuide, match_by_drawing};
 use super::spec::{LayerSpec, OverlapSearch};
+use super::{PipelineError, landmarks};
 use crate::appearance::Appearance;
 use crate::input::Drawing;
 use crate::matching::MatchOptions;
+use crate::math::Point;
 use crate::outline::Outline;
 use crate::registration::{FoundLimbs, Overlap};
 
@@ -40,16 +42,14 @@ pub(super) struct Overlapping {
     pub(super) guide: RegistrationGuide,
     /// All outlines matched to the template's as far as they can be.
     pub(super) matched: Matched,
+    /// By pose, places of the template and its own that are marked as one.
+    pub(super) marked: Vec<Vec<[Point; 2]>>,
     /// By pose, how it lies over itself; `None` of those that are mapped as ever.
     pub(super) poses: Vec<Option<Overlap>>,
 }
 
 /// What of a layer's drawings lies over itself; `None` if nothing does.
-pub(super) fn found(
-    layer: &LayerSpec,
-    drawings: &[Arc<Drawing>],
-    known: &Known,
-) -> Result<Option<Overlapping>, PipelineError> {
+pub(super) fn found(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Option<Overlapping>, PipelineError> {
     if layer.overlaps == OverlapSearch::Refuse || drawings.len() < 2 {
         return Ok(None);
     }
@@ -61,8 +61,12 @@ pub(super) fn found(
     let Some(template) = (0..lengths.len()).max_by(by_length) else {
         return Ok(None);
     };
+    let is_shorter = |pose: usize| (MUCH_SHORTER..SHORTER).contains(&(lengths[pose] / lengths[template]));
+    let otherwise: Vec<usize> = (0..lengths.len())
+        .filter(|pose| *pose != template && is_marked_otherwise(layer, drawings, template, *pose))
+        .collect();
     let shorter: Vec<usize> = (0..lengths.len())
-        .filter(|pose| (MUCH_SHORTER..SHORTER).contains(&(lengths[*pose] / lengths[template])))
+        .filter(|pose| is_shorter(*pose) || otherwise.contains(pose))
         .collect();
     if shorter.is_empty() {
         return Ok(None);
@@ -79,6 +83,13 @@ pub(super) fn found(
         ..MatchOptions::default()
     };
     let names = layer.names();
+    // Where parts lie over one another, what is marked may come in any order along the outline, or lie inside.
+    let open: Vec<usize> = (0..drawings.len()).filter(|pose| !shorter.contains(pose)).collect();
+    let Ok(landmarks) = landmarks::sorted(&layer.marked_only_in(&open), drawings) else {
+        return Ok(None);
+    };
+    let marked = marked_pairs(layer, template, &shorter);
+    let known = (&Known::of(&landmarks), &marked[..]);
     let matched = match_by_drawing(&names, drawings, &mut outlines, &appearances, known, None, options);
     // What cannot be matched at all is refused by the ordinary way, which says why.
     let Ok((matched, mut guide)) = matched else {
@@ -97,6 +108,10 @@ pub(super) fn found(
     let mut poses: Vec<Option<Overlap>> = vec![None; drawings.len()];
     for (pose, found) in shorter.into_iter().zip(sought) {
         let lies_over = |found: &FoundLimbs| {
+            // What is marked has put parts over one another before their limbs were sought.
+            if !marked[pose].is_empty() && found.overlap.share >= LEAST_OVERLAP || otherwise.contains(&pose) {
+                return true;
+            }
             let [before, after] = found.overlap.unexplained;
             let is_clearly_better = after < EXPLAINED_SHARE * before;
             // Parts that touch close a ring, or part the outline otherwise, without lying over one another.
@@ -110,7 +125,49 @@ pub(super) fn found(
     if poses.iter().all(Option::is_none) {
         return Ok(None);
     }
-    Ok(Some(Overlapping { guide, matched, poses }))
+    Ok(Some(Overlapping {
+        guide,
+        matched,
+        marked,
+        poses,
+    }))
+}
+
+/// Whether landmarks lie in a pose as they cannot in one whose parts are apart: in another order along the outline than in the template, or inside where
+/// they lie on it there.
+fn is_marked_otherwise(layer: &LayerSpec, drawings: &[Arc<Drawing>], template: usize, pose: usize) -> bool {
+    let both = layer.marked_only_in(&[template, pose]);
+    if both.landmarks.is_empty() {
+        return false;
+    }
+    let Ok(landmarks) = landmarks::sorted(&both, drawings) else {
+        return true;
+    };
+    let mut along: Vec<[f64; 2]> = (landmarks.on_outline.iter())
+        .filter_map(|landmark| Some([landmark.at[template]?, landmark.at[pose]?]))
+        .collect();
+    along.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let next = along.iter().cycle().skip(1);
+    along.iter().zip(next).filter(|(own, next)| next[1] <= own[1]).count() > 1
+}
+
+/// By drawn pose, the places of landmarks and of the points of lines in the template and in it, as drawings are used; none of poses that are not among `poses`.
+fn marked_pairs(layer: &LayerSpec, template: usize, poses: &[usize]) -> Vec<Vec<[Point; 2]>> {
+    let used = |pose: usize, place: Point| landmarks::as_used(layer, pose, place);
+    let mut pairs = vec![Vec::new(); layer.drawn_poses().len()];
+    for &pose in poses {
+        let pair = |[from, to]: [Point; 2]| [used(template, from), used(pose, to)];
+        let points = (layer.landmarks.iter())
+            .filter_map(|landmark| Some([landmark.at[template]?, landmark.at[pose]?]))
+            .map(pair);
+        let lines = layer.paths.iter().filter_map(|path| {
+            let both = [path.at[template].as_ref()?, path.at[pose].as_ref()?];
+            Some(both.map(|line| [line.first().copied(), line.last().copied()]))
+        });
+        let ends = lines.flat_map(|[from, to]| [0, 1].map(|end| Some([from[end]?, to[end]?])));
+        pairs[pose] = points.chain(ends.flatten().map(pair)).collect();
+    }
+    pairs
 }
 
 /// The length of the outer ring over the root of its area.

@@ -33,6 +33,8 @@ const OVERLAPPING_TOLERANCE: f64 = 0.3;
 const LEAST_COVER: f64 = 0.931;
 /// Cells along the diagonal that this is counted on.
 const COVER_CELLS: f64 = 500.0;
+/// The trust in the place of a vertex that an artist has marked: before all others.
+const MARKED: f64 = 100.0;
 /// Handles that bend the mesh are this far apart, as a fraction of the diagonal; where they contradict one another, further by this factor, so many times.
 const HANDLES_APART: f64 = 0.05;
 const FURTHER: f64 = 1.6;
@@ -48,17 +50,9 @@ pub(super) fn map_overlapping(
 ) -> Result<(Mapping, MappingReport, Arc<Boundaries>), PipelineError> {
     let names = layer.names();
     let kept = overlapping.open();
-    let mut open = layer.only(&kept);
-    open.overlaps = OverlapSearch::Refuse;
     // What is marked in the other poses alone has no place here.
-    let is_marked = |at: &[Option<Point>]| at.iter().any(Option::is_some);
-    let marked: Vec<usize> = (0..open.landmarks.len())
-        .filter(|k| is_marked(&open.landmarks[*k].at))
-        .collect();
-    let lines: Vec<usize> = (0..open.paths.len())
-        .filter(|k| open.paths[*k].at.iter().any(Option::is_some))
-        .collect();
-    open = open.with_landmarks(&marked, &lines);
+    let mut open = layer.only(&kept).without_empty_marks();
+    open.overlaps = OverlapSearch::Refuse;
     // What lies over something shows its own edge there: the mesh is held closer to it.
     open.mesh.simplify.tolerance *= OVERLAPPING_TOLERANCE;
     let open_drawings: Vec<Arc<Drawing>> = kept.iter().map(|pose| Arc::clone(&drawings[*pose])).collect();
@@ -140,12 +134,19 @@ impl Overlapping {
             .map(|pose| match kept.iter().position(|kept| *kept == pose) {
                 Some(number) => Ok(open.poses.positions()[number].clone()),
                 None => {
-                    let wanted: Vec<(Point, f64)> = (reference.iter())
+                    let mut wanted: Vec<(Point, f64)> = (reference.iter())
                         .map(|p| {
                             let place = self.guide.carried(pose, *p).unwrap_or(*p);
                             (place, self.guide.trust(pose, *p))
                         })
                         .collect();
+                    for [from, to] in &self.marked[pose] {
+                        let away = |v: &usize| (reference[*v] - from).norm_squared();
+                        let nearest = (0..reference.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+                        if let Some(wanted) = nearest.and_then(|v| wanted.get_mut(v)) {
+                            *wanted = (*to, MARKED);
+                        }
+                    }
                     let beginning = bent(topology, reference, &wanted);
                     let placed = follow(topology, reference, beginning, &wanted);
                     validity::check_immersion(topology, &placed, &open.rings)

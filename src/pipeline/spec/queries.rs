@@ -119,6 +119,34 @@ impl LayerSpec {
         layer
     }
 
+    /// The layer with what is marked in the drawn poses `kept` alone, in all poses; what is marked in none of these is gone.
+    #[must_use]
+    pub(in crate::pipeline) fn marked_only_in(&self, kept: &[usize]) -> Self {
+        let mut layer = self.clone();
+        let is_kept: Vec<bool> = (0..self.poses.len()).map(|pose| kept.contains(&pose)).collect();
+        for (pose, _) in is_kept.iter().enumerate().filter(|(_, is_kept)| !**is_kept) {
+            for landmark in &mut layer.landmarks {
+                landmark.at[pose] = None;
+            }
+            for path in &mut layer.paths {
+                path.at[pose] = None;
+            }
+        }
+        layer.without_empty_marks()
+    }
+
+    /// The layer without landmarks and lines that no pose has.
+    #[must_use]
+    pub(in crate::pipeline) fn without_empty_marks(self) -> Self {
+        let landmarks: Vec<usize> = (0..self.landmarks.len())
+            .filter(|k| self.landmarks[*k].at.iter().any(Option::is_some))
+            .collect();
+        let paths: Vec<usize> = (0..self.paths.len())
+            .filter(|k| self.paths[*k].at.iter().any(Option::is_some))
+            .collect();
+        self.with_landmarks(&landmarks, &paths)
+    }
+
     /// For each pose whether it lacks the layer, which is shrunk to a point there.
     #[must_use]
     pub fn vanishing(&self) -> Vec<bool> {

@@ -122,8 +122,10 @@ impl Finder<'_> {
                         let at = place + frame * (points[*v] - middle);
                         f64::from((self.search.patches).difference_at(self.comparison.pose, *v, at, &frame))
                     });
+                    let pinned = (self.search.pinned).of_band(0, points, |p| place + frame * (p - middle));
+                    let differs = differs.sum::<f64>() / samples.len().max(1) as f64;
                     Root {
-                        cost: differs.sum::<f64>() / samples.len().max(1) as f64 + TURN_COST * turn_rad.abs(),
+                        cost: differs + TURN_COST * turn_rad.abs() + pinned,
                         place,
                         turn_rad,
                         finder,
@@ -152,11 +154,7 @@ impl Finder<'_> {
         layers[0] = self.comparison.layer(0, &places);
         let chains: Vec<usize> = (1..self.limbs.chains.len()).collect();
         self.grow(&chains, &mut places, &mut layers);
-        Put {
-            energy: self.comparison.energy(&layers),
-            places,
-            layers,
-        }
+        self.put_in(places, layers)
     }
 
     /// The whole figure registered.

@@ -17,6 +17,7 @@ use rayon::prelude::*;
 
 use super::articulation::{Articulation, median};
 use super::comparison::{BARE, CELL_PX, Comparison, Layer, MOST};
+use super::pinned::Pinned;
 use crate::appearance::STEPS_PER_UNIT;
 use crate::math::{Point, angle, rotation};
 use crate::registration::template::{MOST_DIFFERENCE, Template};
@@ -85,6 +86,7 @@ pub(super) struct Search<'a> {
     pub(super) limbs: &'a Articulation,
     pub(super) comparison: &'a Comparison<'a>,
     pub(super) patches: &'a Template,
+    pub(super) pinned: &'a Pinned,
     /// How much larger the figure is in the pose.
     pub(super) scale: f64,
 }
@@ -248,6 +250,9 @@ impl Search<'_> {
                 seen - EXPLAINS * f64::from(rest.unexplained[cell]) * fits
             };
             state.cost += weight * band.iter().map(cost).sum::<f64>();
+            let place = |p: Point| state.joint + frame * (p - joint);
+            state.cost +=
+                self.limbs.nodes[node].len() as f64 * self.pinned.of_band(node, &comparison.lattice.points, place);
         });
     }
 

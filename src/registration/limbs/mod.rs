@@ -19,6 +19,7 @@ mod comparison;
 mod growth;
 mod hypotheses;
 mod order;
+mod pinned;
 mod search;
 
 use rayon::prelude::*;
@@ -26,6 +27,7 @@ use rayon::prelude::*;
 use self::articulation::{Articulation, median};
 use self::comparison::{BARE, Comparison, Layer};
 use self::hypotheses::Search;
+use self::pinned::Pinned;
 use self::search::{Finder, Fine, Put};
 use super::lattice::Lattice;
 use super::levels::LEVELS;
@@ -156,9 +158,10 @@ impl Limbs {
         let chains = (&self.articulation.chain_of[..], self.articulation.chains.len());
         let comparison = Comparison::new(lattice, chains, &self.compared, &image);
         let layers = comparison.layers(places);
-        let before = comparison.energy(&layers);
+        let pinned = Pinned::new(pair, &self.articulation);
+        let looks = comparison.energy(&layers);
         // A beginning that explains nothing says nothing of the size, either: drawings of a character are as large as one another in their own units.
-        let scale = if before > HOPELESS {
+        let scale = if looks > HOPELESS {
             (pair.pose.scale() / pair.reference.scale()).clamp(1.0 / MOST_SCALE, MOST_SCALE)
         } else {
             scale(lattice, places, residuals)
@@ -174,16 +177,15 @@ impl Limbs {
                 limbs: &self.articulation,
                 comparison: &comparison,
                 patches: &self.patches,
+                pinned: &pinned,
                 scale,
             },
             rigid: Rigid::new(lattice, Matrix::identity() * scale),
             levels: &levels,
         };
-        let given = Put {
-            places: places.to_vec(),
-            layers,
-            energy: before,
-        };
+        let first = finder_at(scale);
+        let given = first.put_in(places.to_vec(), layers);
+        let before = given.energy;
         let grown = if before > GOOD {
             let drawn = std::iter::once(finder_at(scale));
             let hidden = GROWN_SCALES
@@ -195,7 +197,7 @@ impl Limbs {
         } else {
             None
         };
-        let given = (finder_at(scale), given);
+        let given = (first, given);
         // One may lead where the other does not; what explains far less leads nowhere.
         let beginnings = match grown {
             Some(grown) if grown.1.energy >= FAR_WORSE * before => vec![given],
@@ -238,7 +240,7 @@ impl Limbs {
             )?;
             self.put_in_order(lattice, &in_order, &mut sought);
         }
-        sought.energies[1] = comparison.energy(&comparison.layers(&sought.places));
+        sought.energies[1] = finder.put(sought.places.clone()).energy;
         Ok(sought)
     }
 

@@ -87,10 +87,16 @@ pub(super) struct Finder<'a> {
 impl Finder<'_> {
     pub(super) fn put(&self, places: Vec<Point>) -> Put {
         let layers = self.comparison.layers(&places);
+        self.put_in(places, layers)
+    }
+
+    /// The figure at places where it shows `layers`.
+    pub(super) fn put_in(&self, places: Vec<Point>, layers: Vec<Layer>) -> Put {
+        let missed = self.search.pinned.of_figure(&places, self.search.scale);
         Put {
-            energy: self.comparison.energy(&layers),
-            layers,
+            energy: self.comparison.energy(&layers) + missed,
             places,
+            layers,
         }
     }
 
@@ -189,11 +195,7 @@ impl Finder<'_> {
                     layers[chain] = self.comparison.layer(chain, &places);
                 }
                 self.grow(&below, &mut places, &mut layers);
-                Put {
-                    energy: self.comparison.energy(&layers),
-                    places,
-                    layers,
-                }
+                self.put_in(places, layers)
             })
             .collect()
     }
@@ -235,7 +237,10 @@ impl Finder<'_> {
         // The cells that it has at rest.
         let side = self.pair.lattice.spacing / CELL_PX as f64;
         let whole = 0.87 * self.limbs.vertices(chain).count() as f64 * side * side;
-        seen as f64 > SEEN_SHARE * whole && sum / (f64::from(STEPS_PER_UNIT) * seen as f64) < EXPLAINED
+        let (nodes, scale) = (&self.limbs.chains[chain].nodes, self.search.scale);
+        (self.search.pinned.are_met(nodes, &now.places, scale))
+            && seen as f64 > SEEN_SHARE * whole
+            && sum / (f64::from(STEPS_PER_UNIT) * seen as f64) < EXPLAINED
     }
 
     /// The figure with every chain where it explains the pose best.
