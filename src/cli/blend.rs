@@ -85,7 +85,8 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     if report.repaired {
         verbosity.note("note: some triangles would have been inverted at these weights; the frame was repaired");
     }
-    if report.flipped > 0 {
+    // A certificate says it with the place.
+    if report.flipped > 0 && !arguments.certify {
         verbosity.note(&format!(
             "note: {} triangles are inverted at these weights",
             report.flipped
@@ -96,7 +97,8 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         let certifier = Certifier::new(&poses, &overlaps, &options).with_context(in_file)?;
         let certificate = certifier.certify(&weights, &vertices).with_context(in_file)?;
         let triangles = poses.topology().triangles();
-        if let Some(defect) = defect(&certificate, triangles, &vertices, options.guard) {
+        let repair = (options.guard == FrameGuard::Off).then_some("--frame-guard repair");
+        if let Some(defect) = defect(&certificate, triangles, &vertices, repair) {
             verbosity.note(&format!("note: {defect}"));
         }
         Some(CertificateText::worst_of(std::iter::once(&certificate)))

@@ -1,6 +1,6 @@
 //! Certificates of frames as JSON, and what they say in words.
 
-use inbetween::blend::{Certificate, Distortion, FrameGuard};
+use inbetween::blend::{Certificate, Distortion};
 use inbetween::math::Point;
 use serde::Serialize;
 
@@ -42,22 +42,21 @@ impl CertificateText {
     }
 }
 
-/// What is broken in a frame whose vertices are at `positions` (#vertices), where, and what helps; nothing if the certificate holds.
+/// What is broken in a frame whose vertices are at `positions` (#vertices), where, and what helps; nothing if the certificate holds. `repair` is what switches the guard on,
+/// unless it is on.
 pub(crate) fn defect(
     certificate: &Certificate,
     triangles: &[[usize; 3]],
     positions: &[Point],
-    guard: FrameGuard,
+    repair: Option<&str>,
 ) -> Option<String> {
     let near = |place: Point| format!("near ({:.1}, {:.1})", place.x, place.y);
     let inverted = certificate.inverted.first().map(|&triangle| {
         let corners = triangles[triangle].map(|vertex| positions[vertex]);
-        let remedy = match guard {
-            FrameGuard::Off => "`guard = \"repair\"` under [blend] repairs it",
-            FrameGuard::Repair => {
-                "the guard found no way; a pose between, or landmarks where the poses differ most, help"
-            }
-        };
+        let remedy = repair.map_or_else(
+            || "the guard found no way; a pose between, or landmarks where the poses differ most, help".to_owned(),
+            |repair| format!("{repair} repairs it"),
+        );
         format!(
             "{} not positive, the first, number {triangle}, {} of the drawings; {remedy}",
             match certificate.inverted_count {

@@ -187,16 +187,15 @@ fn a_frame_that_is_turned_over_is_not_positive_and_stays_json() {
     );
 }
 
-fn two(more: &str) -> Workshop {
+fn two() -> Workshop {
     let workshop = Workshop::new();
-    let animation = "[animation]\nfps = 6\nsize = [24, 24]\n";
-    workshop.two_poses("[0, 0]", "[1, 0]", &format!("{animation}{more}"));
+    workshop.two_poses("[0, 0]", "[1, 0]", "[animation]\nfps = 6\nsize = [24, 24]\n");
     workshop
 }
 
 #[test]
 fn a_render_has_a_certificate_a_frame_beside_it() {
-    let workshop = two("");
+    let workshop = two();
     workshop.succeeds(&["render", "scene.toml", "-o", "plain.gif"]);
     workshop.succeeds(&["render", "scene.toml", "-o", "a.gif", "--certify", "--threads", "3"]);
     let read = |name: &str| std::fs::read(workshop.path(name)).expect(name);
@@ -253,7 +252,7 @@ fn a_render_has_a_certificate_a_frame_beside_it() {
 
 #[test]
 fn certificates_need_a_place() {
-    let workshop = two("");
+    let workshop = two();
     let told = workshop.fails(&["render", "scene.toml", "-o", "-", "--certify"], 2);
     assert!(told.contains("--certify") && told.contains("folder"), "{told}");
     if cfg!(unix) {
@@ -278,10 +277,25 @@ fn certificates_need_a_place() {
 
 #[test]
 fn a_frame_that_does_not_hold_is_named_when_all_is_written() {
-    // Far beyond the second pose: the height of the wide box less three times that of the tall one is less than nothing.
-    let more = "keys = [{ time = 0, at = [0, 0] }, { time = 1, at = [4, 0] }]\n\
-                [pose_space]\nprovider = \"rbf\"\nradial = \"thin-plate\"\n";
-    let workshop = two(more);
+    // Far beyond the narrow box: four times its width less three times that of the wide one is less than nothing.
+    let workshop = Workshop::new();
+    for (name, columns) in [("narrow.png", 14..26), ("wide.png", 2..38)] {
+        workshop.picture(name, |x, y| match columns.contains(&x) && (14..26).contains(&y) {
+            true => [220, 30, 20, 255],
+            false => [0; 4],
+        });
+    }
+    let scene = |guard: &str| {
+        workshop.scene(&format!(
+            "[[pose]]\nname = \"narrow\"\nsource = \"narrow.png\"\nat = [0, 0]\n\
+             [[pose]]\nname = \"wide\"\nsource = \"wide.png\"\nat = [1, 0]\n\
+             [pose_space]\nprovider = \"rbf\"\nradial = \"thin-plate\"\n\
+             [blend]\nguard = \"{guard}\"\n\
+             [animation]\nfps = 6\nsize = [24, 24]\n\
+             keys = [{{ time = 0, at = [0, 0] }}, {{ time = 1, at = [-3, 0] }}]\n"
+        ));
+    };
+    scene("off");
     let told = workshop.fails(&["render", "scene.toml", "-o", "frames", "--certify"], 1);
     let line = told.lines().last().expect("a line");
     for part in [
@@ -296,22 +310,15 @@ fn a_frame_that_does_not_hold_is_named_when_all_is_written() {
         assert!(line.contains(part), "{part}: {told}");
     }
     let all = lines(&workshop, "frames.certificates.jsonl");
-    assert_eq!(
-        (
-            all.len(),
-            std::fs::read_dir(workshop.path("frames")).expect("a folder").count()
-        ),
-        (7, 7)
-    );
-    let first = all
-        .iter()
-        .position(|line| line["positive"] == json!(false))
-        .expect("one does not hold");
+    let files = std::fs::read_dir(workshop.path("frames")).expect("a folder");
+    assert_eq!((all.len(), files.count()), (7, 7));
+    let first = all.iter().position(|line| line["positive"] == json!(false));
+    let first = first.expect("one does not hold");
     assert!(line.contains(&format!("frame {} at", first + 1)), "{told}");
     assert_eq!(all[0]["positive"], json!(true));
     // Frames that hold are no failure, and neither is a scene that is repaired.
     workshop.succeeds(&["render", "scene.toml", "-o", "frames", "--certify", "--frames", "1"]);
-    let workshop = two(&format!("{more}[blend]\nguard = \"repair\"\n"));
+    scene("repair");
     workshop.succeeds(&["render", "scene.toml", "-o", "frames", "--certify"]);
 }
 

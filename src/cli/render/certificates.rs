@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use inbetween::animation::Animation;
-use inbetween::blend::{Certificate, Certifier};
+use inbetween::blend::{Certificate, Certifier, FrameGuard};
 use inbetween::export::PendingFile;
 use inbetween::pipeline::Character;
 use rayon::prelude::*;
@@ -142,11 +142,10 @@ fn certified(
             continue;
         }
         let certificate = certifier.certify(&layer.weights, &layer.positions)?;
-        let (triangles, guard) = (
-            shapes[k].mapping().poses.topology().triangles(),
-            shapes[k].options().guard,
-        );
-        if let Some(defect) = defect(&certificate, triangles, &layer.positions, guard) {
+        let triangles = shapes[k].mapping().poses.topology().triangles();
+        let is_off = shapes[k].options().guard == FrameGuard::Off;
+        let repair = is_off.then_some("`guard = \"repair\"` under [blend]");
+        if let Some(defect) = defect(&certificate, triangles, &layer.positions, repair) {
             defects.push(if is_one_of_several {
                 format!("layer '{}': {defect}", shapes[k].name())
             } else {
