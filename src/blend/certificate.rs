@@ -11,7 +11,7 @@
 //!
 //! Between two frames, [`Certifier::unproven_between`] proves for triangles whose vertices move in straight lines that they are positive all the way (`between.rs`).
 //!
-//! Cost: linear in the triangles and poses, and O(n log n) for n boundary edges of similar length; about half of what the blend itself costs. Nothing of it is computed unless it is asked for.
+//! Cost: linear in the triangles and poses, and O(n log n) for n boundary edges of similar length; about three quarters of what the blend itself costs. Nothing of it is computed unless it is asked for.
 //!
 //! Limits: predicates are exact as long as no product underflows; vertices so far out that distortions overflow are refused. A certificate is about the mesh. The edge that is painted
 //! lies inside the mesh's boundary, is finer than it and may touch itself where the boundary only comes near itself.
