@@ -47,7 +47,7 @@
 //! | `largest_area` | by which factor a triangle is larger or smaller than its reference: the largest of all triangles; 1 for none |
 //! | `of_poses` | `distortion` and `area` of the poses, as geometric means by the frame's weights: the largest of all triangles |
 //!
-//! A frame whose two numbers are no larger than those `of_poses` stays within the distortion of the drawings it is made of. Negative weights count as 0 in that mean. A triangle that
+//! A frame whose two numbers are, but for rounding, no larger than those `of_poses` stays within the distortion of the drawings it is made of. Negative weights count as 0 in that mean. A triangle that
 //! is turned over has the distortion of its mirror image; where a number is not finite, because a triangle has no area, it is `null`. The canonical reference has no size of its own and
 //! is given that of the geometric mean of the poses.
 //!
