@@ -3,6 +3,7 @@
 //! In one run and on one thread, so that the ratios mean something on any machine:
 //! - `faer solve`: faer's own two triangular solves for x and y on the same matrix, factored by faer as it likes best;
 //! - `frame`: everything from weights to vertices, the check for inverted triangles included;
+//! - `certificate`: what is certified of such a frame when it is asked for, and `motion`: the proof between two such frames;
 //! - `triad`: `a = b + s c` over arrays that together hold as many bytes as a frame reads at least once (the factor
 //!   twice, and what the poses say about the triangles): what the memory alone would take.
 //!
@@ -17,9 +18,9 @@ use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, LltRef, SymmetricOrdering, factorize_symbolic_cholesky};
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Conj, Mat, Par, Side};
-use inbetween::blend::{BlendOptions, RigidBlend, Stretch};
+use inbetween::blend::{BlendOptions, Certifier, RigidBlend, Stretch};
 use inbetween::math::Point;
-use inbetween::pose::PoseSet;
+use inbetween::pose::{Overlaps, PoseSet};
 use strip::poses;
 
 #[path = "common/strip.rs"]
@@ -109,6 +110,20 @@ fn frames(criterion: &mut Criterion) {
                     b.iter(|| blend.blend(black_box(&weights), &mut scratch, &mut positions));
                 });
             }
+            let options = BlendOptions::default();
+            let blend = RigidBlend::new(&poses, &options).expect("a blend");
+            let certifier = Certifier::new(&poses, &Overlaps::default(), &options).expect("a certifier");
+            let (mut scratch, mut positions, mut later) = (blend.scratch(), Vec::new(), Vec::new());
+            blend.blend(&weights, &mut scratch, &mut positions).expect("a frame");
+            let mut moved = weights.clone();
+            (moved[0], moved[1]) = (weights[0] + 0.05, weights[1] - 0.05);
+            blend.blend(&moved, &mut scratch, &mut later).expect("a frame");
+            group.bench_function(format!("certificate, {count} poses"), |b| {
+                b.iter(|| certifier.certify(black_box(&weights), &positions));
+            });
+            group.bench_function(format!("motion, {count} poses"), |b| {
+                b.iter(|| certifier.unproven_between(black_box(&positions), &later));
+            });
             let bytes = 2 * 12 * factor_entries + 32 * count * poses.topology().triangles().len();
             let (b, c) = (vec![1.0; bytes / 24], vec![2.0; bytes / 24]);
             let mut a = b.clone();

@@ -9,7 +9,7 @@
 //! 4. Vertices minimise `sum area |J(V) - A(w)|^2`: one sparse factorisation, two triangular solves a frame for x and
 //!    y together ([`RigidBlend`]).
 //! 5. An anchor fixes the translation; several soft ones are terms of the same energy.
-//! 6. Inverted triangles are counted, or the frame is repaired ([`FrameGuard`]).
+//! 6. Inverted triangles are counted, or the frame is repaired ([`FrameGuard`]). Whether its outline crosses itself, and how far it is distorted, a [`Certificate`] says.
 //!
 //! Differences from the paper:
 //! - Its last formula writes `R(alpha_{tau,i}(w))`; the subscript `i` is a misprint, the angle is the blended one.
@@ -30,8 +30,11 @@
 //! deformations by handles. `data/pictures` has them.
 
 mod anchor;
+mod between;
 mod branch;
+mod certificate;
 mod crowd;
+mod distortion;
 mod guard;
 mod maps;
 mod reference;
@@ -45,7 +48,9 @@ mod targets;
 #[cfg(test)]
 mod tests;
 
+pub use certificate::{BoundaryCrossing, Certificate, Certifier, LimbOverlap, TRUNK};
 pub use crowd::CrowdScratch;
+pub use distortion::Distortion;
 pub use rigid::{BlendReport, BlendScratch, RigidBlend, WEIGHT_SUM_TOLERANCE, blend_once};
 
 use crate::solve::SolveError;
@@ -258,6 +263,14 @@ pub enum BlendError {
         vertex: usize,
         /// Vertices of the mesh.
         count: usize,
+    },
+    /// A frame has the wrong number of vertices.
+    #[error("{found} vertices for a mesh of {expected}")]
+    WrongVertexCount {
+        /// Given.
+        found: usize,
+        /// The mesh's vertices.
+        expected: usize,
     },
     /// One number a pose is needed.
     #[error("{found} {what} for {poses} poses")]

@@ -5,6 +5,7 @@
 
 mod add;
 mod blend;
+mod certificate;
 mod check;
 #[cfg(feature = "explorer")]
 mod explore;

@@ -27,6 +27,37 @@
 //! reference = "canonical"   # no pose is special; the name of a pose measures everything from that pose
 //! ```
 //!
+//! # Certified frames
+//!
+//! What can be said of frames for certain is said where `--certify` asks for it:
+//!
+//! ```text
+//! inbetween render cat/scene.toml -o cat.gif --certify
+//! inbetween blend walker.json --weights 0.5,0.5,0,0,0 --certify -o half.json
+//! ```
+//!
+//! `render` writes `cat.gif.certificates.jsonl` beside the output, a line a frame; `blend` adds `certificate` to its frame. Everything else that is written has the same bytes.
+//!
+//! | field | what it says |
+//! |---|---|
+//! | `positive` | every triangle of the frame's mesh has positive area, decided exactly |
+//! | `simple` | the boundary of the mesh does not cross itself, decided exactly; boundaries that touch do not cross |
+//! | `overlaps` | where poses lie over themselves, boundaries of different limbs may cross; here are the pairs that do, by name, `trunk` for what belongs to no limb |
+//! | `largest_distortion` | how much more a triangle is stretched in one direction than across it, against the blend's reference: the largest of all triangles; 1 for none |
+//! | `largest_area` | by which factor a triangle is larger or smaller than its reference: the largest of all triangles; 1 for none |
+//! | `of_poses` | `distortion` and `area` of the poses, as geometric means by the frame's weights: the largest of all triangles |
+//!
+//! A frame whose two numbers are, but for rounding, no larger than those `of_poses` stays within the distortion of the drawings it is made of. Negative weights count as 0 in that mean. A triangle that
+//! is turned over has the distortion of its mirror image; where a number is not finite, because a triangle has no area, it is `null`. The canonical reference has no size of its own and
+//! is given that of the geometric mean of the poses.
+//!
+//! A line of `render` begins with the number of the frame, counted from 1 as in `--frames`, its place in the pose space, `at`, and its `weights`. In a scene of several layers
+//! it says the worst of the layers that are seen in the frame, and `layers` what is true of each. If a frame is not positive or not simple, the exit code is 1 when all is written, and the error
+//! names the frame, its place in the pose space, what is broken, where, and what helps. `guard = "repair"` makes frames positive; an outline that crosses itself is led apart by landmarks on the
+//! parts that meet, or by a pose between.
+//!
+//! In the library [`Certifier`](crate::blend::Certifier) does the same, names every broken place, and proves that nothing folds between two frames whose vertices move in straight lines.
+//!
 //! # What stays in its place
 //!
 //! Rotations and stretches say nothing about where the figure is. By default its centroid moves in proportion to the weights. `anchor`

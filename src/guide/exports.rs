@@ -32,7 +32,8 @@
 //!
 //! `--size`, `--fps`, `--camera` and `--background` take the place of what the scene says. `--supersample 4` looks at 4 x 4 points of each pixel, for the final
 //! pictures. `--frames 1-10,20` or `--frames 1-99:2` renders some frames only; formats of
-//! moving curves need frames in a row.
+//! moving curves need frames in a row. `--certify` writes beside the output what holds of each frame, whatever kind of output that is ([certified
+//! frames](super::blending#certified-frames)).
 //!
 //! # Formats with keys
 //!
@@ -59,6 +60,6 @@
 //! `--resume` leaves out frames that are complete, of this scene and these settings: every file carries a hash of all that it was made
 //! from. Any share of the frames can be rendered on any computer, with any number of threads, to the same bytes; that is all a render farm
 //! needs. The repository's folder `farm` has a template in the Open Job Description and a script for Slurm. `--progress json` tells progress
-//! to programs. The exit code is 0 when everything is written, 1 for bad input or failed work, and 2 for wrong usage.
+//! to programs. The exit code is 0 when everything is written, 1 for bad input, failed work or a certificate that does not hold, and 2 for wrong usage.
 //!
 //! The next chapter: [`explorer`](super::explorer).

@@ -64,7 +64,7 @@ pub(crate) fn first_meeting(rings: &[Ring]) -> Option<Meeting> {
 }
 
 /// Where two segments known to meet do so, up to rounding.
-fn common_point(a: Point, b: Point, c: Point, d: Point) -> Point {
+pub(super) fn common_point(a: Point, b: Point, c: Point, d: Point) -> Point {
     for (p, (q, r)) in [(a, (c, d)), (b, (c, d)), (c, (a, b)), (d, (a, b))] {
         if predicate::on_segment(p, q, r) {
             return p;

@@ -11,6 +11,7 @@ use super::layer::{self, LayerShape};
 use super::note::Note;
 use super::{Build, PipelineError, weighting};
 use crate::animation::{Animation, Background};
+use crate::blend::Certifier;
 use crate::pipeline::spec::CharacterSpec;
 use crate::render::drawing::{VectorFrame, VectorGroup, VectorNode};
 use crate::render::puppet::{Puppet, PuppetFrame};
@@ -141,7 +142,7 @@ impl Character {
     /// # Errors
     /// [`PipelineError`] if the place has the wrong dimension or is not finite.
     pub fn posed_at(&self, place: &[f64]) -> Result<Posed, PipelineError> {
-        self.posed_of(&self.weights.weights_at(place).map_err(PipelineError::Weights)?)
+        self.posed_of(&self.weights_at(place)?)
     }
 
     /// The character for given weights, one a pose.
@@ -150,6 +151,23 @@ impl Character {
     /// [`PipelineError`] if they do not fit or do not sum to 1.
     pub fn posed_of(&self, weights: &[f64]) -> Result<Posed, PipelineError> {
         self.figure.posed(&weighting::checked_weights(weights, &self.names)?)
+    }
+
+    /// The weights of its poses at a place of the pose space; sum 1.
+    ///
+    /// # Errors
+    /// [`PipelineError`] if the place has the wrong dimension or is not finite.
+    pub fn weights_at(&self, place: &[f64]) -> Result<Vec<f64>, PipelineError> {
+        self.weights.weights_at(place).map_err(PipelineError::Weights)
+    }
+
+    /// What certifies frames of its layers, one a layer: each is asked with the layer's own weights and positions in a frame ([`super::PosedLayer`]).
+    ///
+    /// # Errors
+    /// [`PipelineError`] if a layer's poses do not allow it.
+    pub fn certifiers(&self) -> Result<Vec<Certifier>, PipelineError> {
+        let certifier = |shape: &LayerShape| Ok(Certifier::of_mapping(shape.mapping(), shape.options())?);
+        self.figure.layers.iter().map(certifier).collect()
     }
 
     /// Paints a frame.

@@ -269,6 +269,16 @@ impl PoseSet {
     }
 }
 
+impl Overlaps {
+    /// Reads only where the mesh lies over itself from the text of a mapping file.
+    ///
+    /// # Errors
+    /// [`MappingFileError`] if the text is no mapping, or its counts disagree.
+    pub fn from_mapping_json(text: &str) -> Result<Self, MappingFileError> {
+        overlaps(&parse(text)?)
+    }
+}
+
 /// Polygons whose vertices correspond: what `inbetween triangulate` reads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polygons {

@@ -3,6 +3,7 @@
 mod bad_input;
 mod canvas;
 mod carried_drawings;
+mod certificates;
 mod command;
 mod copies;
 mod crisp_silhouette;

@@ -7,6 +7,7 @@ use inbetween::export::Repetition;
 use inbetween::pipeline::Character;
 use inbetween::scene::Scene;
 
+use super::certificates::Certification;
 use crate::cli::Verbosity;
 use crate::cli::frames;
 use crate::cli::progress::{Progress, ProgressKind};
@@ -19,6 +20,8 @@ pub(super) struct Job<'a> {
     pub(super) scene: &'a Scene,
     /// The frames that are wanted, from 1, in order.
     pub(super) numbers: Vec<usize>,
+    /// The frames that are certified, those that are there already included.
+    pub(super) certification: Option<Certification>,
     /// Into how many samples a pixel is divided, in each direction.
     pub(super) supersample: usize,
     /// Whether frames that are there already are left out.
@@ -63,10 +66,14 @@ impl Job<'_> {
         Progress::new(self.numbers.len(), self.progress, self.verbosity)
     }
 
-    /// Ends the progress, and tells what there is to tell about the frames.
+    /// Ends the progress, tells what there is to tell about the frames, and certifies them if that is wanted. Called when all other files are written: where a certificate does
+    /// not hold, this fails.
     pub(super) fn done(&self, character: &Character, progress: &Progress) -> anyhow::Result<()> {
         progress.finish();
         frames::tell_inverted(character, self.animation(), &self.numbers, self.verbosity)?;
-        Ok(())
+        match &self.certification {
+            Some(certification) => certification.write(character, self.animation()),
+            None => Ok(()),
+        }
     }
 }

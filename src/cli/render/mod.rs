@@ -1,6 +1,7 @@
 //! `inbetween render`: its arguments, and which file writes which kind of output.
 
 mod apng;
+mod certificates;
 mod fingerprint;
 mod format;
 mod gif;
@@ -19,6 +20,7 @@ use inbetween::animation::Background;
 use inbetween::pipeline::CameraRule;
 use inbetween::scene::Scene;
 
+use self::certificates::Certification;
 use self::format::Format;
 use self::job::Job;
 use super::progress::ProgressKind;
@@ -36,6 +38,7 @@ use super::{Failure, Verbosity};
 Examples:
   inbetween render walker/scene.toml -o walker.gif
   inbetween render walker/scene.toml -o walker.webm --size 1920x1080 --fps 30
+  inbetween render walker/scene.toml -o walker.gif --certify   and walker.gif.certificates.jsonl
   inbetween render walker/scene.toml -o walker.png --format sprites --size 240x270 --fps 12
   inbetween render walker/scene.toml -o frames --frames 101-200 --threads 8 --resume   one share of a render farm")]
 pub(crate) struct Arguments {
@@ -73,6 +76,10 @@ pub(crate) struct Arguments {
     /// Leave out frames whose file is already there, complete, of this scene and these settings (folders only)
     #[arg(long)]
     resume: bool,
+    /// Write a certificate of each frame to OUT.certificates.jsonl, a line a frame, and exit with 1 where one does not hold: whether all triangles are positive and the outline
+    /// does not cross itself, decided exactly, and the largest distortion beside that of the poses
+    #[arg(long)]
+    certify: bool,
     /// How progress is told
     #[arg(long, value_name = "KIND", default_value = "auto")]
     progress: ProgressKind,
@@ -127,6 +134,13 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         Some(frames) => frames.within(count).map_err(Failure::Usage)?,
         None => (1..=count).collect(),
     };
+    let certification = match arguments.certify {
+        true => Some(Certification::beside(&arguments.output, &numbers).map_err(Failure::Usage)?),
+        false => None,
+    };
+    if let Some(certification) = &certification {
+        certification.open()?;
+    }
     let mut pool = rayon::ThreadPoolBuilder::new();
     if let Some(threads) = arguments.threads {
         pool = pool.num_threads(threads);
@@ -136,6 +150,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
         output: &arguments.output,
         scene: &scene,
         numbers,
+        certification,
         supersample: arguments.supersample,
         resume: arguments.resume,
         progress: arguments.progress,

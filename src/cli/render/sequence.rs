@@ -42,7 +42,7 @@ fn written(mut job: Job<'_>, kind: SequenceKind, write: Write) -> anyhow::Result
                 files - complete
             ));
         }
-        if job.numbers.is_empty() {
+        if job.numbers.is_empty() && job.certification.is_none() {
             return Ok(());
         }
     }

@@ -53,14 +53,14 @@ impl Character {
         })
     }
 
-    fn weights_at(&self, place: &[f64]) -> Result<Vec<f32>, PipelineError> {
+    fn single_weights_at(&self, place: &[f64]) -> Result<Vec<f32>, PipelineError> {
         let weights = self.weights.weights_at(place).map_err(PipelineError::Weights)?;
         Ok(weights.into_iter().map(|weight| weight as f32).collect())
     }
 
     fn played(&self, animation: &Animation) -> Result<RuntimeAnimation, PipelineError> {
         let weights = (0..animation.frame_count())
-            .map(|index| self.weights_at(&animation.at(animation.time_of_frame(index))))
+            .map(|index| self.single_weights_at(&animation.at(animation.time_of_frame(index))))
             .collect::<Result<_, _>>()?;
         Ok(RuntimeAnimation {
             fps: animation.fps,
@@ -86,7 +86,7 @@ impl Character {
         let mut weights = Vec::new();
         for row in 0..GRID {
             for column in 0..GRID {
-                weights.extend(self.weights_at(&[low.x + step.x * column as f64, low.y + step.y * row as f64])?);
+                weights.extend(self.single_weights_at(&[low.x + step.x * column as f64, low.y + step.y * row as f64])?);
             }
         }
         Ok(Some(WeightField {
