@@ -32,6 +32,20 @@ pub enum ValidityError {
         /// Its first corner.
         y: f64,
     },
+    /// The triangles around an inner vertex go around it more than once.
+    #[error(
+        "the triangles around vertex {vertex} go around it {turns} times near ({x:.6}, {y:.6}): the mesh is folded there"
+    )]
+    Winds {
+        /// Which vertex.
+        vertex: usize,
+        /// How often.
+        turns: usize,
+        /// Where it is.
+        x: f64,
+        /// Where it is.
+        y: f64,
+    },
     /// The boundary edges of the triangles are not the stated rings.
     #[error("the boundary of the triangles is not ring {ring}: edge {from} -> {to} is {}", if *missing { "missing" } else { "not in any ring" })]
     WrongBoundary {
@@ -77,7 +91,8 @@ pub fn check_embedding(topology: &Topology, positions: &[Point], rings: &[Vec<us
     Ok(())
 }
 
-/// Proves what can be proven of a mesh at `positions` that may lie over itself: every triangle is positive, and `rings` are its boundary.
+/// Proves what can be proven of a mesh at `positions` that may lie over itself: every triangle is positive, those around an inner vertex go around it once,
+/// so that the map is one to one near every point inside, and `rings` are its boundary.
 ///
 /// # Errors
 /// The first defect found, as a [`ValidityError`].
@@ -100,7 +115,35 @@ pub fn check_immersion(topology: &Topology, positions: &[Point], rings: &[Vec<us
             });
         }
     }
-    Ok(())
+    match first_winding(topology, positions) {
+        Some((vertex, turns)) => Err(ValidityError::Winds {
+            vertex,
+            turns,
+            x: positions[vertex].x,
+            y: positions[vertex].y,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// The first inner vertex that the triangles around it, all of them positive, go around more than once, and how often.
+pub(crate) fn first_winding(topology: &Topology, positions: &[Point]) -> Option<(usize, usize)> {
+    let mut angles_rad = vec![0.0; positions.len()];
+    for &vertices in topology.triangles() {
+        for k in 0..3 {
+            let [a, b, c] = [0, 1, 2].map(|corner| positions[vertices[(k + corner) % 3]]);
+            let (u, v) = (b - a, c - a);
+            angles_rad[vertices[k]] += u.perp(&v).atan2(u.dot(&v));
+        }
+    }
+    let mut is_inner = vec![true; positions.len()];
+    for v in topology.boundary_loops().into_iter().flatten() {
+        is_inner[v] = false;
+    }
+    // The sum is a whole number of turns, but for rounding.
+    (0..positions.len())
+        .map(|v| (v, (angles_rad[v] / std::f64::consts::TAU).round() as usize))
+        .find(|(v, turns)| is_inner[*v] && *turns > 1)
 }
 
 fn check_boundary(topology: &Topology, rings: &[Vec<usize>]) -> Result<(), ValidityError> {
@@ -150,6 +193,32 @@ mod tests {
             .map(Point::from)
             .to_vec();
         (topology, positions)
+    }
+
+    #[test]
+    fn a_vertex_that_is_gone_around_twice_is_found() {
+        // Eight triangles a quarter of a turn each.
+        let triangles = (0..8).map(|k| [8, k, (k + 1) % 8]).collect();
+        let topology = Topology::new(9, triangles).expect("a mesh");
+        let rings = vec![(0..8).collect::<Vec<usize>>()];
+        let around = |turn: f64| Point::new(turn.cos(), turn.sin());
+        let places = |turns: f64| {
+            let rim = (0..8).map(|k| around(std::f64::consts::TAU * turns * f64::from(k) / 8.0));
+            rim.chain([Point::zeros()]).collect::<Vec<Point>>()
+        };
+        assert_eq!(check_immersion(&topology, &places(1.0), &rings), Ok(()));
+        let error = check_immersion(&topology, &places(2.0), &rings).expect_err("it goes around twice");
+        assert!(
+            matches!(
+                error,
+                ValidityError::Winds {
+                    vertex: 8,
+                    turns: 2,
+                    ..
+                }
+            ),
+            "{error}"
+        );
     }
 
     #[test]

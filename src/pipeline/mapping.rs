@@ -8,7 +8,7 @@ use super::drawn::{Known, is_found};
 use super::landmarks::{self, Landmarks};
 use super::note::{Note, NoteKind};
 use super::overlapping;
-use super::overlapping_mapping::map_overlapping;
+use super::overlapping_mapping::{Unfit, map_overlapping};
 use super::spec::{LayerRole, LayerSpec};
 use super::triangulation::{self, Labels};
 use super::{MappingReport, PipelineError, Stage, deformed};
@@ -93,17 +93,13 @@ pub(super) fn map_drawn(
     check_hole_counts(&names, drawings)?;
     let mut found = overlapping::found(layer, drawings)?;
     while let Some(overlapping) = found {
-        let mapped = map_overlapping(layer, drawings, &overlapping, notes.clone(), begins)?;
-        // A mesh that winds around one of its vertices twice cannot be blended.
-        if RigidBlend::new(&mapped.0.poses, &BlendOptions::default()).is_err() {
-            break;
+        match map_overlapping(layer, drawings, &overlapping, notes.clone(), begins)? {
+            // A mesh that goes around one of its holes otherwise than in the other poses cannot be blended.
+            Ok(mapped) if RigidBlend::new(&mapped.0.poses, &BlendOptions::default()).is_err() => break,
+            Ok(mapped) => return Ok(mapped),
+            // What was found in these poses is not enough: they are mapped as ever.
+            Err(Unfit(poses)) => found = overlapping.without(&poses),
         }
-        let uncovered = overlapping.uncovered(&mapped.0);
-        if uncovered.is_empty() {
-            return Ok(mapped);
-        }
-        // What was found in these poses does not cover them: they are mapped as ever.
-        found = overlapping.without(&uncovered);
     }
     let landmarks = landmarks::sorted(layer, drawings)?;
     let known = Known::of(&landmarks);

@@ -40,14 +40,18 @@ const HANDLES_APART: f64 = 0.05;
 const FURTHER: f64 = 1.6;
 const TRIES: usize = 6;
 
-/// Maps a layer without copies some of whose drawings lie over themselves; `notes` are those that are known.
+/// Poses in which what was found is not enough for a mesh.
+pub(super) struct Unfit(pub(super) Vec<usize>);
+
+/// Maps a layer without copies some of whose drawings lie over themselves; `notes` are those that are known. Poses that the mesh cannot be brought onto, or does not
+/// cover there, are named instead.
 pub(super) fn map_overlapping(
     layer: &LayerSpec,
     drawings: &[Arc<Drawing>],
     overlapping: &Overlapping,
     mut notes: Vec<Note>,
     begins: &mut dyn FnMut(Stage),
-) -> Result<(Mapping, MappingReport, Arc<Boundaries>), PipelineError> {
+) -> Result<Result<(Mapping, MappingReport, Arc<Boundaries>), Unfit>, PipelineError> {
     let names = layer.names();
     let kept = overlapping.open();
     // What is marked in the other poses alone has no place here.
@@ -64,7 +68,14 @@ pub(super) fn map_overlapping(
             .filter(|note| !matches!(note.kind, NoteKind::Drawing(_))),
     );
     let outlines = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
-    let whole = overlapping.completed(&names, outlines, &mapping)?;
+    let whole = match overlapping.completed(&names, outlines, &mapping)? {
+        Ok(whole) => whole,
+        Err(unfit) => return Ok(Err(unfit)),
+    };
+    let uncovered = overlapping.uncovered(&whole);
+    if !uncovered.is_empty() {
+        return Ok(Err(Unfit(uncovered)));
+    }
     let registration = &overlapping.guide.registration;
     let explained: Vec<Option<Explained>> = (0..names.len()).map(|pose| registration.explained(pose)).collect();
     let template = PointLocator::new(
@@ -109,7 +120,7 @@ pub(super) fn map_overlapping(
         quality: MeshQuality::of(&whole.poses),
         ..of_open
     };
-    Ok((whole, report, boundaries))
+    Ok(Ok((whole, report, boundaries)))
 }
 
 impl Overlapping {
@@ -119,20 +130,19 @@ impl Overlapping {
         names: &[String],
         mut outlines: Vec<Outline>,
         open: &Mapping,
-    ) -> Result<Mapping, PipelineError> {
+    ) -> Result<Result<Mapping, Unfit>, PipelineError> {
         let kept = self.open();
         // Their holes are in the order of the mesh's rings.
         for (pose, outline) in kept.iter().zip(&open.outlines) {
             outlines[*pose] = outline.clone();
         }
-        let refusal = |pose: usize, message: String| PipelineError::stage(names, Some(pose), message);
         let template = kept.iter().position(|pose| *pose == self.guide.reference).unwrap_or(0);
         let topology = open.poses.topology();
         let reference = &open.poses.positions()[template];
-        let positions: Vec<Vec<Point>> = (0..names.len())
+        let placed: Vec<Option<Vec<Point>>> = (0..names.len())
             .into_par_iter()
             .map(|pose| match kept.iter().position(|kept| *kept == pose) {
-                Some(number) => Ok(open.poses.positions()[number].clone()),
+                Some(number) => Some(open.poses.positions()[number].clone()),
                 None => {
                     let mut wanted: Vec<(Point, f64)> = (reference.iter())
                         .map(|p| {
@@ -149,12 +159,15 @@ impl Overlapping {
                     }
                     let beginning = bent(topology, reference, &wanted);
                     let placed = follow(topology, reference, beginning, &wanted);
-                    validity::check_immersion(topology, &placed, &open.rings)
-                        .map_err(|error| refusal(pose, error.to_string()))?;
-                    Ok(placed)
+                    (validity::check_immersion(topology, &placed, &open.rings).is_ok()).then_some(placed)
                 }
             })
-            .collect::<Result<_, PipelineError>>()?;
+            .collect();
+        let unfit: Vec<usize> = (0..names.len()).filter(|pose| placed[*pose].is_none()).collect();
+        if !unfit.is_empty() {
+            return Ok(Err(Unfit(unfit)));
+        }
+        let positions = placed.into_iter().flatten();
         let rows = open.matching.outer.rows().iter().map(|row| {
             let of_template = row[template];
             let parameter = |pose: usize| match kept.iter().position(|kept| *kept == pose) {
@@ -165,7 +178,7 @@ impl Overlapping {
             (0..names.len()).map(parameter).collect()
         });
         let outer = Correspondence::new(rows.collect()).map_err(|error| PipelineError::stage(names, None, error))?;
-        Ok(Mapping {
+        Ok(Ok(Mapping {
             overlaps: self.overlaps(topology.triangles(), reference),
             poses: PoseSet::new(topology.clone(), names.iter().cloned().zip(positions).collect())
                 .map_err(|error| PipelineError::stage(names, None, error))?,
@@ -176,11 +189,11 @@ impl Overlapping {
                 reference: self.guide.reference,
                 outer,
             },
-        })
+        }))
     }
 
     /// The poses whose figure is not what `mapping` covers of it: what was found there is not enough.
-    pub(super) fn uncovered(&self, mapping: &Mapping) -> Vec<usize> {
+    fn uncovered(&self, mapping: &Mapping) -> Vec<usize> {
         let is_uncovered = |pose: &usize| {
             self.poses[*pose].is_some()
                 && cover(
@@ -299,7 +312,8 @@ fn bent(topology: &Topology, reference: &[Point], wanted: &[(Point, f64)]) -> Ve
         let mut positions = Vec::new();
         let dragged = HandleDeformation::new(topology, reference, &from)
             .and_then(|deformation| deformation.drag(&to, &mut deformation.scratch(), &mut positions));
-        if dragged.is_ok() {
+        // What begins folded around a vertex stays so.
+        if dragged.is_ok() && validity::first_winding(topology, &positions).is_none() {
             return positions;
         }
         apart *= FURTHER;
