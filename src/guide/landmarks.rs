@@ -43,7 +43,11 @@
 //! A landmark that lies deeper inside than a hundredth of the drawing's diagonal in every pose that names it becomes a vertex of the mesh
 //! there. Any other is an outline landmark: it is put onto the nearest place of the outer outline, at most three hundredths of the diagonal
 //! away, and is met exactly by the matching. Around the outline landmarks have to come in the same order in every pose; if they do not, the scene is refused with
-//! the landmark's name.
+//! the landmark's name, unless the drawing lies over itself there.
+//!
+//! Where [parts lie over one another](super::drawings#parts-that-lie-over-one-another), landmarks lead: a hand whose tip is marked takes its arm there, in front of the chest or
+//! behind it. In such a pose they may come in any order, and one that is on the outline of the open drawing may lie inside. A pose whose landmarks lie so is
+//! looked at for overlapping parts even if its outline does not ask for it.
 //!
 //! A pose may lack a landmark. On the outline it is then placed by the matching, inside by its place relative to the outlines of the poses that have
 //! it. A landmark near the rim of a hole is snapped to

@@ -4,6 +4,7 @@ use inbetween::animation::Animation;
 use inbetween::input::BitmapOptions;
 use inbetween::math::Point;
 use inbetween::mesh::PointLocator;
+use inbetween::pipeline::LandmarkSpec;
 use inbetween::pipeline::{OverlapSearch, map_layer};
 use inbetween::pose::Mapping;
 use inbetween::{Character, CharacterSpec, Drawing, LayerSpec, PoseSpec, read_pixels};
@@ -184,6 +185,30 @@ fn an_arm_in_front_of_the_chest_is_found_and_lies_in_front() {
         Mapping::from_json(&mapping.to_json()).expect("a file").overlaps,
         mapping.overlaps
     );
+}
+
+#[test]
+fn landmarks_lie_on_the_outline_of_one_drawing_and_inside_another() {
+    // The tip of a hand and the middle of its arm, each at the edge of the sleeve or the hand that is seen in both.
+    let marks = |[_, elbow, hand]: Arm| {
+        let along = (hand - elbow).normalize();
+        let across = Point::new(along.y, -along.x);
+        [hand + along * 16.0, elbow + (hand - elbow) * 0.2 + across * ARM]
+    };
+    let mut marked = layer();
+    for (k, (from, to)) in marks(stretched()).into_iter().zip(marks(across())).enumerate() {
+        let at = vec![Some(from), Some(to)];
+        marked.landmarks.push(LandmarkSpec::new(format!("mark {k}"), at));
+    }
+    let (mapping, report) = map_layer(&marked).expect("a mapping");
+    mapping.check().expect("a valid mapping");
+    assert_eq!(mapping.overlaps.poses.len(), 1);
+    let diagonal = mapping.outlines[1].diagonal();
+    for (landmark, to) in report.landmarks.iter().zip(marks(across())) {
+        assert_eq!(landmark.given, [true, true]);
+        let off = (landmark.at[1][0] - to).norm() / diagonal;
+        assert!(off < 2e-3, "{} at {} instead of {to}", landmark.name, landmark.at[1][0]);
+    }
 }
 
 #[test]
