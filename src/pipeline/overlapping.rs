@@ -14,10 +14,11 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::PipelineError;
 use super::boundaries::Matched;
 use super::drawn::{Known, RegistrationGuide, match_by_drawing};
+use super::landmarks::{self, Landmarks};
 use super::spec::{LayerSpec, OverlapSearch};
-use super::{PipelineError, landmarks};
 use crate::appearance::Appearance;
 use crate::input::Drawing;
 use crate::matching::MatchOptions;
@@ -62,9 +63,7 @@ pub(super) fn found(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Opti
         return Ok(None);
     };
     let is_shorter = |pose: usize| (MUCH_SHORTER..SHORTER).contains(&(lengths[pose] / lengths[template]));
-    let otherwise: Vec<usize> = (0..lengths.len())
-        .filter(|pose| *pose != template && is_marked_otherwise(layer, drawings, template, *pose))
-        .collect();
+    let otherwise = marked_otherwise(layer, drawings, template);
     let shorter: Vec<usize> = (0..lengths.len())
         .filter(|pose| is_shorter(*pose) || otherwise.contains(pose))
         .collect();
@@ -133,22 +132,33 @@ pub(super) fn found(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Opti
     }))
 }
 
-/// Whether landmarks lie in a pose as they cannot in one whose parts are apart: in another order along the outline than in the template, or inside where
-/// they lie on it there.
-fn is_marked_otherwise(layer: &LayerSpec, drawings: &[Arc<Drawing>], template: usize, pose: usize) -> bool {
-    let both = layer.marked_only_in(&[template, pose]);
-    if both.landmarks.is_empty() {
-        return false;
+/// The poses whose landmarks lie as they cannot where parts are apart: in another order along the outline than in the template, or inside where they lie on
+/// it there. An order that is reversed is that of a drawing that faces the other way.
+fn marked_otherwise(layer: &LayerSpec, drawings: &[Arc<Drawing>], template: usize) -> Vec<usize> {
+    let others = (0..drawings.len()).filter(|pose| *pose != template);
+    if layer.landmarks.is_empty() {
+        return Vec::new();
     }
-    let Ok(landmarks) = landmarks::sorted(&both, drawings) else {
-        return true;
-    };
+    match landmarks::sorted(layer, drawings) {
+        Ok(landmarks) => others.filter(|pose| is_shuffled(&landmarks, template, *pose)).collect(),
+        Err(_) => others
+            .filter(|&pose| {
+                let both = landmarks::sorted(&layer.marked_only_in(&[template, pose]), drawings);
+                both.map_or(true, |landmarks| is_shuffled(&landmarks, template, pose))
+            })
+            .collect(),
+    }
+}
+
+/// Whether landmarks come around the outline of a pose neither in the order of the template nor in its reverse.
+fn is_shuffled(landmarks: &Landmarks, template: usize, pose: usize) -> bool {
     let mut along: Vec<[f64; 2]> = (landmarks.on_outline.iter())
         .filter_map(|landmark| Some([landmark.at[template]?, landmark.at[pose]?]))
         .collect();
     along.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let next = along.iter().cycle().skip(1);
-    along.iter().zip(next).filter(|(own, next)| next[1] <= own[1]).count() > 1
+    let back = along.iter().zip(next).filter(|(own, next)| next[1] <= own[1]).count();
+    back > 1 && along.len() > back + 1
 }
 
 /// By drawn pose, the places of landmarks and of the points of lines in the template and in it, as drawings are used; none of poses that are not among `poses`.

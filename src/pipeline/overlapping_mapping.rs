@@ -33,6 +33,8 @@ const OVERLAPPING_TOLERANCE: f64 = 0.3;
 const LEAST_COVER: f64 = 0.931;
 /// Cells along the diagonal that this is counted on.
 const COVER_CELLS: f64 = 500.0;
+/// How far off a landmark the mesh may stay at most, as a fraction of the diagonal.
+const LANDMARK_OFF: f64 = 0.02;
 /// The trust in the place of a vertex that an artist has marked: before all others.
 const MARKED: f64 = 100.0;
 /// Handles that bend the mesh are this far apart, as a fraction of the diagonal; where they contradict one another, further by this factor, so many times.
@@ -150,16 +152,18 @@ impl Overlapping {
                             (place, self.guide.trust(pose, *p))
                         })
                         .collect();
-                    for [from, to] in &self.marked[pose] {
-                        let away = |v: &usize| (reference[*v] - from).norm_squared();
-                        let nearest = (0..reference.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
-                        if let Some(wanted) = nearest.and_then(|v| wanted.get_mut(v)) {
-                            *wanted = (*to, MARKED);
-                        }
+                    let marked: Vec<(usize, Point)> = (self.marked[pose].iter())
+                        .filter_map(|[from, to]| Some((nearest(reference, *from)?, *to)))
+                        .collect();
+                    for &(v, to) in &marked {
+                        wanted[v] = (to, MARKED);
                     }
                     let beginning = bent(topology, reference, &wanted);
                     let placed = follow(topology, reference, beginning, &wanted);
-                    (validity::check_immersion(topology, &placed, &open.rings).is_ok()).then_some(placed)
+                    let off = LANDMARK_OFF * point::diagonal(&placed);
+                    let are_met = marked.iter().all(|(v, to)| (placed[*v] - to).norm() < off);
+                    let is_valid = validity::check_immersion(topology, &placed, &open.rings).is_ok();
+                    (are_met && is_valid).then_some(placed)
                 }
             })
             .collect();
@@ -257,6 +261,12 @@ impl Overlapping {
             },
         }
     }
+}
+
+/// The vertex nearest to a place.
+fn nearest(positions: &[Point], place: Point) -> Option<usize> {
+    let away = |v: &usize| (positions[*v] - place).norm_squared();
+    (0..positions.len()).min_by(|a, b| away(a).total_cmp(&away(b)))
 }
 
 /// What the union of some triangles and the inside of an outline, less its openings, have in common, of what either has.
