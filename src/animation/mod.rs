@@ -6,19 +6,47 @@
 //! A loop is closed with the same rule at its seam.
 //!
 //! The place at a time depends on the keys and the time alone, so every frame can be computed on its own.
+//!
+//! # Spacing
+//!
+//! Without more, the path is at half of the curve between two keys at half the time, as the parameter of the cubic counts it. The
+//! [spacing chart](Key::spacing) of a key says how far along that parameter the path is at even steps of the time since the key before; between the
+//! steps it goes on along a monotone cubic. The places that are passed are the same with a chart and without; only when they are
+//! passed differs, and with it how fast the path comes to a key and leaves it: a chart may stop there.
+//!
+//! The parameter, and not the length of the curve, is what is measured: on the straight, even way between two keys they are one, and
+//! a chart that is even leaves any path as it is.
+//!
+//! A chart does not leave the way between its keys. Anticipation and overshoot are places of their own in the pose space, so
+//! they are keys, before and beyond.
+//!
+//! # Holds
+//!
+//! On ones every frame is a drawing of its own; on twos or threes ([`Hold`]) a drawing is shown for two or three frames, and the path
+//! is looked at only where one begins:
+//!
+//! 1. A key is at the first frame that is not before its time, and is in force up to the frame of the next key.
+//! 2. Drawings are counted from the first frame of the animation. Counting begins anew at the frame of a key that has a hold of its own, and at
+//!    that of the next key, where the animation's own hold is in force again. Other keys leave the count alone, so that a
+//!    recorded path with keys at any time plays evenly. A key that has to be drawn where the count would pass over it is given a hold.
+//! 3. Frame `k` shows the path at the last frame up to `k` where a drawing begins ([`Animation::drawn_frame`]). A loop is counted
+//!    from its first frame each time around.
 
 mod background;
+mod hold;
+mod key;
+mod path;
+mod spacing;
 
 pub use background::Background;
+pub use hold::Hold;
+pub use key::Key;
 
-/// A place to be at a time.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Key {
-    /// When, in seconds.
-    pub time: f64,
-    /// Where in the pose space.
-    pub at: Vec<f64>,
-}
+use path::Path;
+
+/// By how much a key may come after a frame and still belong to it, in frames: times such as 0.7 s are rounded, and at rates up to
+/// 1000 over a million seconds a frame's time is known to about 1e-7 of a frame.
+const SAME_FRAME: f64 = 1e-6;
 
 /// What is played, and how it is framed.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +57,8 @@ pub struct Animation {
     pub size: [u32; 2],
     /// What is behind the character.
     pub background: Background,
+    /// For how many frames a drawing is shown, where a key does not say otherwise.
+    pub hold: Hold,
     path: Path,
     route: Route,
 }
@@ -56,6 +86,40 @@ pub enum AnimationError {
         /// Those of the first.
         expected: usize,
     },
+    /// A spacing chart before which there is no key.
+    #[error("animation key {index} has a spacing chart, but there is no key before it to come from; remove `spacing`")]
+    SpacingWithoutWay {
+        /// Which key, from 0.
+        index: usize,
+    },
+    /// A mark of a spacing chart that is not between 0 and 1.
+    #[error(
+        "animation key {index}: mark {mark} of its spacing is {value}, but must be between 0 (the key before) and 1 (this key); to go \
+         beyond a key, add one there"
+    )]
+    SpacingRange {
+        /// Which key, from 0.
+        index: usize,
+        /// Which mark, from 0.
+        mark: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// A spacing chart that turns back.
+    #[error(
+        "animation key {index}: mark {mark} of its spacing is {value}, below the mark before, {before}; a chart goes one way, so to \
+         turn back, add a key"
+    )]
+    SpacingOrder {
+        /// Which key, from 0.
+        index: usize,
+        /// Which mark, from 0.
+        mark: usize,
+        /// Its value.
+        value: f64,
+        /// The value before.
+        before: f64,
+    },
     /// Keys whose times do not increase.
     #[error("animation key {index} is at time {time}, not after its predecessor at {before}; sort the keys by time")]
     KeyOrder {
@@ -77,18 +141,6 @@ enum Route {
     Poses { looped: bool },
 }
 
-#[derive(Debug, Clone, PartialEq)]
-struct Path {
-    /// At least one; times increase strictly.
-    keys: Vec<Key>,
-    /// The last key of a loop that repeats its first, which is not among the others.
-    closing: Option<Key>,
-    /// The time after which a loop starts over.
-    period: Option<f64>,
-    /// The velocity at each key.
-    tangents: Vec<Vec<f64>>,
-}
-
 impl Animation {
     /// Frames a second when the scene does not say.
     pub const DEFAULT_FPS: f64 = 24.0;
@@ -104,7 +156,8 @@ impl Animation {
     /// to return from the last to the first.
     ///
     /// # Errors
-    /// [`AnimationError`] if there is no key, or one is not finite, has another dimension or is not after its predecessor.
+    /// [`AnimationError`] if there is no key, or one is not finite, has another dimension, is not after its predecessor, or has a
+    /// spacing chart that is none.
     pub fn new(keys: Vec<Key>, looped: bool) -> Result<Self, AnimationError> {
         let dimension = keys.first().ok_or(AnimationError::NoKey)?.at.len();
         let mut before = None;
@@ -119,6 +172,7 @@ impl Animation {
                     expected: dimension,
                 });
             }
+            check_spacing(index, &key.spacing)?;
             if let Some(before) = before.replace(key.time).filter(|before| *before >= key.time) {
                 return Err(AnimationError::KeyOrder {
                     index,
@@ -131,31 +185,13 @@ impl Animation {
     }
 
     /// As [`Self::new`] for keys that are known to be fit.
-    fn of_keys(mut keys: Vec<Key>, looped: bool) -> Self {
-        let span = match (keys.first(), keys.last()) {
-            (Some(first), Some(last)) => last.time - first.time,
-            _ => 0.0,
-        };
-        let (mut period, mut closing) = (None, None);
-        if looped && keys.len() > 1 {
-            if keys.first().map(|k| &k.at) == keys.last().map(|k| &k.at) {
-                closing = keys.pop();
-                period = Some(span);
-            } else {
-                period = Some(span * keys.len() as f64 / (keys.len() - 1) as f64);
-            }
-        }
-        let tangents = tangents(&keys, period);
+    fn of_keys(keys: Vec<Key>, looped: bool) -> Self {
         Self {
             fps: Self::DEFAULT_FPS,
             size: Self::DEFAULT_SIZE,
             background: Background::Transparent,
-            path: Path {
-                keys,
-                closing,
-                period,
-                tangents,
-            },
+            hold: Hold::Ones,
+            path: Path::new(keys, looped),
             route: Route::Keys,
         }
     }
@@ -168,10 +204,7 @@ impl Animation {
         let keys = places
             .into_iter()
             .enumerate()
-            .map(|(k, at)| Key {
-                time: k as f64 * Self::SECONDS_A_POSE,
-                at: at.to_vec(),
-            })
+            .map(|(k, at)| Key::new(k as f64 * Self::SECONDS_A_POSE, at.to_vec()))
             .collect();
         Ok(Self {
             route: Route::Poses { looped },
@@ -192,6 +225,7 @@ impl Animation {
             fps: self.fps,
             size: self.size,
             background: self.background,
+            hold: self.hold,
             ..moved
         })
     }
@@ -242,189 +276,95 @@ impl Animation {
         }
     }
 
-    /// The place in the pose space at `time`, in seconds. Before the first and after the last key it rests.
+    /// Whether any drawing is shown for more than one frame.
+    #[must_use]
+    pub fn is_held(&self) -> bool {
+        let is_long = |hold: Hold| hold != Hold::Ones;
+        is_long(self.hold) || self.path.keys.iter().any(|key| key.hold.is_some_and(is_long))
+    }
+
+    /// The frame whose drawing is shown at frame `index`, both counted from 0: at most `index`, and `index` itself on ones. All
+    /// frames for which it is the same are equal.
+    #[must_use]
+    pub fn drawn_frame(&self, index: usize) -> usize {
+        if !self.is_held() {
+            return index;
+        }
+        let within = if self.is_loop() {
+            index % self.frame_count()
+        } else {
+            index
+        };
+        let keys = &self.path.keys;
+        // Frames of keys do not decrease, and the first key is at frame 0.
+        let current = keys
+            .partition_point(|key| self.frame_of(key.time) <= within)
+            .saturating_sub(1);
+        let counted_from = (0..=current)
+            .rev()
+            .find(|&k| keys[k].hold.is_some() || (k > 0 && keys[k - 1].hold.is_some()))
+            .unwrap_or(0);
+        let first = self.frame_of(keys[counted_from].time);
+        let hold = keys[current].hold.unwrap_or(self.hold);
+        index - within.saturating_sub(first) % hold.frames()
+    }
+
+    /// The first frame that is not before `time`.
+    fn frame_of(&self, time: f64) -> usize {
+        let frames_a_second = match self.path.period {
+            Some(period) => self.frame_count() as f64 / period,
+            None => self.fps,
+        };
+        ((time - self.path.keys[0].time) * frames_a_second - SAME_FRAME).ceil() as usize
+    }
+
+    /// The place in the pose space that frame `index`, counted from 0, shows: where the path is at the time of the frame that
+    /// is drawn for it.
+    ///
+    /// ```
+    /// use inbetween::animation::{Animation, Hold, Key};
+    ///
+    /// let mut animation = Animation::new(vec![Key::new(0.0, vec![0.0]), Key::new(1.0, vec![24.0])], false)?;
+    /// animation.hold = Hold::Twos;
+    /// let places: Vec<f64> = (0..6).flat_map(|frame| animation.place_of_frame(frame)).collect();
+    /// assert!(places.iter().zip([0.0, 0.0, 2.0, 2.0, 4.0, 4.0]).all(|(a, b)| (a - b).abs() < 1e-12));
+    /// # Ok::<(), inbetween::animation::AnimationError>(())
+    /// ```
+    #[must_use]
+    pub fn place_of_frame(&self, index: usize) -> Vec<f64> {
+        self.at(self.time_of_frame(self.drawn_frame(index)))
+    }
+
+    /// The place in the pose space at `time`, in seconds, without regard to holds. Before the first and after the last key it
+    /// rests.
     #[must_use]
     pub fn at(&self, time: f64) -> Vec<f64> {
-        let Path {
-            keys, period, tangents, ..
-        } = &self.path;
-        let start = keys[0].time;
-        let time = match period {
-            Some(period) => start + (time - start).rem_euclid(*period),
-            None => time,
-        };
-        if time <= start || keys.len() == 1 {
-            return keys[0].at.clone();
-        }
-        let after = keys.partition_point(|k| k.time <= time);
-        let from = after - 1;
-        let (to, end) = match (keys.get(after), period) {
-            (Some(key), _) => (after, key.time),
-            (None, Some(period)) => (0, start + period),
-            (None, None) => return keys[from].at.clone(),
-        };
-        let length = end - keys[from].time;
-        let u = (time - keys[from].time) / length;
-        // The cubic Hermite basis.
-        let to_value = u * u * (3.0 - 2.0 * u);
-        let (from_slope, to_slope) = (u * (1.0 - u) * (1.0 - u) * length, u * u * (u - 1.0) * length);
-        (0..keys[from].at.len())
-            .map(|d| {
-                keys[from].at[d]
-                    + to_value * (keys[to].at[d] - keys[from].at[d])
-                    + from_slope * tangents[from][d]
-                    + to_slope * tangents[to][d]
-            })
-            .collect()
+        self.path.at(time)
     }
 }
 
-/// The velocity at each key.
-fn tangents(keys: &[Key], period: Option<f64>) -> Vec<Vec<f64>> {
-    let count = keys.len();
-    let dimension = keys.first().map_or(0, |k| k.at.len());
-    // The piece from key k to its successor: its length in time and its mean velocity.
-    let piece = |k: usize| -> Option<(f64, Vec<f64>)> {
-        let next = (k + 1) % count;
-        let length = if next > k {
-            keys[next].time - keys[k].time
-        } else {
-            keys[0].time + period? - keys[k].time
-        };
-        let velocity = (0..dimension)
-            .map(|d| (keys[next].at[d] - keys[k].at[d]) / length)
-            .collect();
-        Some((length, velocity))
-    };
-    let rests = |velocity: &[f64]| velocity.iter().all(|v| *v == 0.0);
-    (0..count)
-        .map(|k| {
-            if count == 1 {
-                return vec![0.0; dimension];
-            }
-            let before = if k > 0 || period.is_some() {
-                piece((k + count - 1) % count)
-            } else {
-                None
-            };
-            match (before, piece(k)) {
-                (Some((_, v)), _) | (_, Some((_, v))) if rests(&v) => v,
-                (Some((a, u)), Some((b, v))) if !rests(&v) => {
-                    (0..dimension).map(|d| (b * u[d] + a * v[d]) / (a + b)).collect()
-                }
-                // The open ends: the chord. A straight path keeps its speed.
-                (Some((_, v)), _) | (_, Some((_, v))) => v,
-                (None, None) => vec![0.0; dimension],
-            }
-        })
-        .collect()
+/// Whether the spacing of key `index` is a chart.
+pub(crate) fn check_spacing(index: usize, spacing: &[f64]) -> Result<(), AnimationError> {
+    if index == 0 && !spacing.is_empty() {
+        return Err(AnimationError::SpacingWithoutWay { index });
+    }
+    let mut before = 0.0;
+    for (mark, &value) in spacing.iter().enumerate() {
+        if !(0.0..=1.0).contains(&value) {
+            return Err(AnimationError::SpacingRange { index, mark, value });
+        }
+        if value < before {
+            return Err(AnimationError::SpacingOrder {
+                index,
+                mark,
+                value,
+                before,
+            });
+        }
+        before = value;
+    }
+    Ok(())
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn key(time: f64, x: f64, y: f64) -> Key {
-        Key { time, at: vec![x, y] }
-    }
-
-    #[test]
-    fn two_keys_are_a_straight_even_path() {
-        let path = Animation::new(vec![key(1.0, 0.0, 0.0), key(3.0, 4.0, 2.0)], false).expect("keys");
-        assert_eq!(path.at(1.5), vec![1.0, 0.5]);
-        assert_eq!(path.at(0.0), vec![0.0, 0.0]);
-        assert_eq!(path.at(9.0), vec![4.0, 2.0]);
-        assert_eq!(path.frame_count(), 49);
-        assert_eq!(path.time_of_frame(48), 3.0);
-    }
-
-    #[test]
-    fn a_hold_rests() {
-        let keys = vec![
-            key(0.0, 0.0, 0.0),
-            key(1.0, 1.0, 0.0),
-            key(2.0, 1.0, 0.0),
-            key(3.0, 0.0, 1.0),
-        ];
-        let path = Animation::new(keys, false).expect("keys");
-        for k in 0..=10 {
-            assert_eq!(path.at(1.0 + f64::from(k) / 10.0), vec![1.0, 0.0]);
-        }
-    }
-
-    #[test]
-    fn a_loop_that_repeats_its_first_key_ends_there() {
-        let keys = vec![key(0.0, 0.0, 0.0), key(1.0, 1.0, 0.0), key(2.5, 0.0, 0.0)];
-        let path = Animation::new(keys, true).expect("keys");
-        assert_eq!(path.duration(), 2.5);
-        assert_eq!(path.frame_count(), 60);
-        assert_eq!(path.at(2.5), path.at(0.0));
-        let given: Vec<Key> = path.given_keys().cloned().collect();
-        assert_eq!((path.keys().len(), given.len()), (2, 3));
-        assert_eq!(Animation::new(given, true).expect("keys"), path);
-    }
-
-    #[test]
-    fn one_key_is_one_frame() {
-        let path = Animation::new(vec![key(0.0, 0.3, 0.4)], true).expect("keys");
-        assert_eq!((path.frame_count(), path.time_of_frame(0)), (1, 0.0));
-        assert_eq!(path.at(7.0), vec![0.3, 0.4]);
-    }
-
-    #[test]
-    fn keys_that_are_no_animation_are_refused() {
-        let refused = |keys: Vec<Key>| Animation::new(keys, true).expect_err("no animation");
-        assert_eq!(refused(vec![]), AnimationError::NoKey);
-        assert_eq!(
-            refused(vec![key(0.0, f64::NAN, 0.0)]),
-            AnimationError::NotFinite { index: 0 }
-        );
-        let (time, before) = (1.0, 1.0);
-        assert_eq!(
-            refused(vec![key(1.0, 0.0, 0.0), key(1.0, 1.0, 0.0)]),
-            AnimationError::KeyOrder { index: 1, time, before }
-        );
-        let line = Key {
-            time: 2.0,
-            at: vec![0.5],
-        };
-        let (found, expected) = (1, 2);
-        assert_eq!(
-            refused(vec![key(1.0, 0.0, 0.0), line]),
-            AnimationError::Dimension {
-                index: 1,
-                found,
-                expected
-            }
-        );
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(32))]
-        #[test]
-        fn passes_through_its_keys_with_continuous_velocity(
-            steps in prop::collection::vec((0.1..2.0f64, -3.0..3.0f64, -3.0..3.0f64), 2..7),
-            looped: bool,
-        ) {
-            let mut time = 0.0;
-            let keys: Vec<Key> = steps.iter().map(|(dt, x, y)| { time += dt; key(time, *x, *y) }).collect();
-            let path = Animation::new(keys.clone(), looped).expect("keys");
-            for k in &keys {
-                for (a, b) in path.at(k.time).iter().zip(&k.at) {
-                    prop_assert!((a - b).abs() < 1e-9);
-                }
-            }
-            // The velocity from both sides of each key, ends of an open path left out.
-            let inner = if looped { 0..keys.len() } else { 1..keys.len() - 1 };
-            for k in inner {
-                let (h, t) = (1e-6, keys[k].time);
-                let (before, here, after) = (path.at(t - h), path.at(t), path.at(t + h));
-                for d in 0..2 {
-                    let jump = (after[d] - 2.0 * here[d] + before[d]).abs() / h;
-                    prop_assert!(jump < 0.05, "velocity jumps by {jump} at key {k}");
-                }
-            }
-        }
-    }
-}
+mod tests;

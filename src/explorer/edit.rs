@@ -116,6 +116,9 @@ pub(super) enum PartList {
 pub(super) struct KeyText {
     pub(super) time: f64,
     pub(super) at: Vec<f64>,
+    pub(super) hold: Option<i64>,
+    #[serde(default)]
+    pub(super) spacing: Vec<f64>,
 }
 
 /// A handle of a deformed copy.

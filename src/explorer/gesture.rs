@@ -8,7 +8,7 @@
 
 use std::path::Path;
 
-use inbetween::animation::Animation;
+use inbetween::animation::{Animation, Hold};
 use inbetween::scene::Scene;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -176,6 +176,8 @@ fn keys_through(samples: &[Sample], tolerance: f64, grain: f64, looped: bool) ->
     let rounded = |sample: &Sample| KeyText {
         time: (sample.time * 1e3).round() / 1e3,
         at: sample.at.iter().map(|v| round_to(*v, grain)).collect(),
+        hold: None,
+        spacing: Vec::new(),
     };
     let keys_of = |chosen: &[usize]| {
         let mut keys: Vec<KeyText> = chosen.iter().map(|&k| rounded(&samples[k])).collect();
@@ -239,7 +241,14 @@ fn round_to(value: f64, grain: f64) -> f64 {
 fn animation(keys: &[KeyText], looped: bool, fps: f64, dimension: usize) -> Result<Animation, Refusal> {
     let list = |numbers: &[f64]| numbers.iter().map(|v| format!("{v:?}")).collect::<Vec<_>>().join(", ");
     let keys: Vec<String> = (keys.iter())
-        .map(|key| format!("{{ time = {:?}, at = [{}] }}", key.time, list(&key.at)))
+        .map(|key| {
+            let hold = key.hold.map(|hold| format!(", hold = {hold}")).unwrap_or_default();
+            let spacing = match key.spacing.as_slice() {
+                [] => String::new(),
+                marks => format!(", spacing = [{}]", list(marks)),
+            };
+            format!("{{ time = {:?}, at = [{}]{hold}{spacing} }}", key.time, list(&key.at))
+        })
         .collect();
     let text = format!(
         "version = 1\n[[pose]]\nname = \"a\"\nsource = \"a.png\"\nat = [{}]\n[animation]\nfps = {fps:?}\nloop = {looped}\nkeys = [{}]\n",
@@ -258,6 +267,7 @@ struct PathRequest {
     #[serde(rename = "loop")]
     looped: Option<bool>,
     fps: Option<f64>,
+    hold: Option<i64>,
 }
 
 /// `POST api/path`.
@@ -268,7 +278,11 @@ pub(super) fn path(body: &[u8], session: &Session) -> Result<Value, Refusal> {
     let own = &scene.animation;
     let fps = asked.fps.unwrap_or(own.fps);
     let looped = asked.looped.unwrap_or(own.is_loop());
-    let played = match (&asked.keys, asked.looped) {
+    let hold = match asked.hold {
+        Some(frames) => Hold::of_frames(frames).ok_or_else(|| Refusal::bad("`hold` must be 1, 2 or 3"))?,
+        None => own.hold,
+    };
+    let mut played = match (&asked.keys, asked.looped) {
         (Some(keys), _) => animation(keys, looped, fps, scene.dimension())?,
         (None, None) => {
             let mut played = own.clone();
@@ -279,10 +293,13 @@ pub(super) fn path(body: &[u8], session: &Session) -> Result<Value, Refusal> {
             let keys = own.given_keys().map(|key| KeyText {
                 time: key.time,
                 at: key.at.clone(),
+                hold: key.hold.map(|hold| hold.frames() as i64),
+                spacing: key.spacing.clone(),
             });
             animation(&keys.collect::<Vec<_>>(), looped, fps, scene.dimension())?
         }
     };
+    played.hold = hold;
     if !(fps > 0.0 && fps <= 1000.0) {
         return Err(Refusal::bad("`fps` must be above 0 and at most 1000"));
     }
@@ -292,10 +309,10 @@ pub(super) fn path(body: &[u8], session: &Session) -> Result<Value, Refusal> {
             "{count} frames are too many to look at; at most {MOST_FRAMES}"
         )));
     }
-    let places: Vec<Vec<f64>> = (0..count).map(|k| played.at(played.time_of_frame(k))).collect();
+    let places: Vec<Vec<f64>> = (0..count).map(|k| played.place_of_frame(k)).collect();
     Ok(json!({
         "duration": played.duration(), "frame_count": count, "fps": played.fps, "start": played.time_of_frame(0),
-        "loop": played.is_loop(), "at": places,
+        "loop": played.is_loop(), "held": played.is_held(), "at": places,
     }))
 }
 

@@ -77,7 +77,8 @@
 //!  "layers": [{"name": "walker", "poses": [0, 1, 2]}, ...],
 //!  "landmarks": [{"name": "nose", "layer": 0, "line": 31, "path": false, "at": {"stand": [120.5, 40], ...}}, ...],
 //!  "animation": {"fps": 24, "loop": false, "size": [1280, 720], "background": "transparent",   // or "#rrggbbaa"
-//!                "own_keys": true, "keys": [{"time": 0, "at": [0, 0]}, ...], "duration": 6.2, "frame_count": 149},
+//!                "hold": 1, "own_keys": true, "keys": [{"time": 0, "at": [0, 0], "hold": 2, "spacing": [0.2, 0.5]}, ...],
+//!                "duration": 6.2, "frame_count": 149},                  // a key has `hold` and `spacing` where the file does
 //!  "box": [[-1, -1], [1, 1]],                            // of the poses; null unless the dimension is 2
 //!  "domain": [[-2.4, -2.4], [2.4, 2.4]],                 // what `inbetween weights --grid` covers
 //!  "camera": {"scale": 0.7, "shift": [12, 30]},          // frame pixel = drawing unit * scale + shift; null without a mesh
@@ -230,7 +231,7 @@
 //! | `move_pseudo_pose` | `index`, `from` and/or `at` |
 //! | `remove_pseudo_pose` | `index` |
 //! | `set` | `table` (`pose_space`, `blend`, `texture`, `mesh`, `input`, `animation`), `key`, `value`; null removes the key |
-//! | `set_keys` | `keys` [{`time`, `at`}], `loop` and `fps` optional |
+//! | `set_keys` | `keys` [{`time`, `at`, `hold` and `spacing` optional}], `loop` and `fps` optional |
 //! | `add_deformed_pose` | `name` (optional), `of`, `at`, `handles` [{`from`, `to`, `layer`}] |
 //! | `set_handles` | `pose`, `handles` |
 //! | `remove_pose` | `pose` (a copy, or a drawn pose without copies; its places in landmarks go, too) |
@@ -259,8 +260,9 @@
 //!
 //! # Animation and gestures
 //!
-//! `POST api/path {"keys": [{"time", "at"}], "loop": false, "fps": 24}` (all optional: the scene's otherwise): the path as it will be
-//! played: `{"duration", "frame_count", "fps", "start", "at": [[X, Y], ...]}`, one place a frame.
+//! `POST api/path {"keys": [{"time", "at", "hold", "spacing"}], "loop": false, "fps": 24, "hold": 1}` (all optional: the scene's otherwise): the path as
+//! it will be played: `{"duration", "frame_count", "fps", "start", "held": false, "at": [[X, Y], ...]}`, one place a frame; `held` says
+//! that places are held from frame to frame, not moved between.
 //!
 //! `POST api/gesture {"samples": [[t, X, Y], ...], "smoothing": 0.05, "tolerance": 0.02, "duration": null, "loop": false}`: a recorded
 //! path as keys for `set_keys`: smoothed over `smoothing` seconds, retimed to `duration` seconds, reduced to the fewest keys whose path stays

@@ -57,7 +57,7 @@ impl From<&SceneError> for Problem {
             SceneProblem::SourceMissing { pose, .. } | SceneProblem::SourceOutside { pose, .. } => {
                 (problem.place, problem.pose) = (Some(Where::Pose), Some(pose.clone()));
             }
-            SceneProblem::KeyOrder { .. } => problem.place = Some(Where::Animation),
+            SceneProblem::KeyOrder { .. } | SceneProblem::Animation(_) => problem.place = Some(Where::Animation),
             SceneProblem::SamePlace { .. } | SceneProblem::HalfPlaced { .. } => problem.place = Some(Where::Space),
             _ => {}
         }

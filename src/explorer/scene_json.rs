@@ -1,6 +1,6 @@
 //! The scene, as the page needs it.
 
-use inbetween::animation::Background;
+use inbetween::animation::{Background, Key};
 use inbetween::blend::{FrameGuard, Reference, Stretch};
 use inbetween::math::Point;
 use inbetween::pipeline::{ArtChoice, Facing, HandleMove, LayerShape, Register};
@@ -225,8 +225,21 @@ fn animation(scene: &Scene) -> Value {
             Background::Transparent => "transparent".to_owned(),
             Background::Colour([r, g, b, a]) => format!("#{r:02x}{g:02x}{b:02x}{a:02x}"),
         },
-        "keys": animation.given_keys().map(|key| json!({"time": key.time, "at": key.at})).collect::<Vec<_>>(),
+        "hold": animation.hold.frames(),
+        "keys": animation.given_keys().map(key_json).collect::<Vec<_>>(),
         "duration": animation.duration(),
         "frame_count": animation.frame_count(),
     })
+}
+
+/// A key as `set_keys` takes it.
+fn key_json(key: &Key) -> Value {
+    let mut text = json!({"time": key.time, "at": key.at});
+    if let Some(hold) = key.hold {
+        text["hold"] = hold.frames().into();
+    }
+    if !key.spacing.is_empty() {
+        text["spacing"] = json!(key.spacing);
+    }
+    text
 }

@@ -29,7 +29,7 @@ impl<W: Write> std::fmt::Debug for ApngWriter<W> {
 }
 
 impl<W: Write> ApngWriter<W> {
-    /// An APNG of `count` frames of `size` (columns, rows) at `fps` frames a second, whose bytes go to `writer`; give a `&mut` of
+    /// An APNG of `count` frames, each [added](Self::add) once, of `size` (columns, rows) at `fps` frames a second, whose bytes go to `writer`; give a `&mut` of
     /// what is wanted back.
     ///
     /// # Errors
@@ -51,7 +51,7 @@ impl<W: Write> ApngWriter<W> {
         };
         encoder.set_animated(count as u32, plays)?;
         let rate = Rate::of(fps);
-        let (numerator, denominator) = delay(rate, 0);
+        let (numerator, denominator) = delay(rate, 0, 1);
         encoder.set_frame_delay(numerator, denominator)?;
         encoder.set_dispose_op(png::DisposeOp::None)?;
         encoder.set_blend_op(png::BlendOp::Source)?;
@@ -70,12 +70,22 @@ impl<W: Write> ApngWriter<W> {
     /// # Errors
     /// [`WriteError`] if the bytes cannot be written, the frame has another size, or there are too many.
     pub fn add(&mut self, frame: &Frame) -> Result<(), WriteError> {
+        self.add_held(frame, 1)
+    }
+
+    /// Adds a frame that is shown for the time of `frames` frames, at least 1, as one picture with a longer delay.
+    /// It counts as one of the file's frames.
+    ///
+    /// # Errors
+    /// As [`Self::add`].
+    pub fn add_held(&mut self, frame: &Frame, frames: usize) -> Result<(), WriteError> {
+        let frames = frames.max(1) as u64;
         if [frame.width, frame.height] != self.size {
             return Err(WriteError::unsuitable("all frames of an APNG have one size"));
         }
         let change = self.changes.next(frame, 1);
-        let (numerator, denominator) = delay(self.rate, self.count);
-        self.count += 1;
+        let (numerator, denominator) = delay(self.rate, self.count, frames);
+        self.count += frames;
         let buffer = change.part.straight();
         let writer = &mut self.writer;
         writer.reset_frame_position()?;
@@ -94,14 +104,16 @@ impl<W: Write> ApngWriter<W> {
     }
 }
 
-/// The time frame `index` is shown, as a fraction of seconds in 16 bits.
-fn delay(rate: Rate, index: u64) -> (u16, u16) {
+/// The time `frames` frames from `index` on are shown together, as a fraction of seconds in 16 bits.
+fn delay(rate: Rate, index: u64, frames: u64) -> (u16, u16) {
     /// Ticks a second where the rate's own fraction is too long.
     const TICKS: u16 = 1000;
-    match (u16::try_from(rate.seconds), u16::try_from(rate.frames)) {
-        (Ok(seconds), Ok(frames)) => (seconds, frames),
+    let seconds = u64::from(rate.seconds).saturating_mul(frames);
+    match (u16::try_from(seconds), u16::try_from(rate.frames)) {
+        (Ok(seconds), Ok(rate)) => (seconds, rate),
         _ => {
-            let shown = rate.ticks_of(index, u32::from(TICKS)).min(u64::from(u16::MAX));
+            let shown = rate.ticks_of_frames(index, frames, u32::from(TICKS));
+            let shown = shown.min(u64::from(u16::MAX));
             (shown as u16, TICKS)
         }
     }
@@ -146,11 +158,12 @@ mod tests {
 
     #[test]
     fn delays_are_exact_where_they_can_be_and_add_up_where_not() {
-        assert_eq!(delay(Rate::of(24.0), 7), (1, 24));
-        assert_eq!(delay(Rate::of(23.976), 7), (1001, 24000));
-        assert_eq!(delay(Rate::of(0.5), 0), (2, 1));
+        assert_eq!(delay(Rate::of(24.0), 7, 1), (1, 24));
+        assert_eq!(delay(Rate::of(23.976), 7, 1), (1001, 24000));
+        assert_eq!(delay(Rate::of(0.5), 0, 1), (2, 1));
+        assert_eq!(delay(Rate::of(24.0), 6, 2), (2, 24));
         let odd = Rate::of(17.123_457);
-        let total: u32 = (0..171).map(|k| u32::from(delay(odd, k).0)).sum();
+        let total: u32 = (0..171).map(|k| u32::from(delay(odd, k, 1).0)).sum();
         assert_eq!(total, 9986);
     }
 }

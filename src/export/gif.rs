@@ -85,6 +85,15 @@ impl<W: Write> GifWriter<W> {
     /// # Errors
     /// [`WriteError`] if the bytes cannot be written or the frame has another size.
     pub fn add(&mut self, frame: &Frame) -> Result<(), WriteError> {
+        self.add_held(frame, 1)
+    }
+
+    /// Adds a frame that is shown for the time of `frames` frames, at least 1, as one picture with a longer delay.
+    ///
+    /// # Errors
+    /// As [`Self::add`].
+    pub fn add_held(&mut self, frame: &Frame, frames: usize) -> Result<(), WriteError> {
+        let frames = frames.max(1) as u64;
         let [width, height] = self.size.map(usize::from);
         if [frame.width, frame.height] != [width, height] {
             return Err(WriteError::unsuitable("all frames of a GIF have one size"));
@@ -110,7 +119,7 @@ impl<W: Write> GifWriter<W> {
         let buffer: Vec<u8> = (top..top + rows)
             .flat_map(|y| indices[y * width + left..][..columns].iter().copied())
             .collect();
-        let delay = hundredths(self.count, self.rate);
+        let delay = hundredths(self.count, frames, self.rate);
         let frame = gif::Frame {
             delay,
             dispose: match self.backdrop {
@@ -125,7 +134,7 @@ impl<W: Write> GifWriter<W> {
             buffer: buffer.into(),
             ..gif::Frame::default()
         };
-        self.count += 1;
+        self.count += frames;
         Ok(self.encoder.write_frame(&frame)?)
     }
 
@@ -138,9 +147,10 @@ impl<W: Write> GifWriter<W> {
     }
 }
 
-/// How long frame `index` is shown.
-fn hundredths(index: u64, rate: Rate) -> u16 {
-    rate.ticks_of(index, 100).clamp(SHORTEST, u64::from(u16::MAX)) as u16
+/// How long `frames` frames from `index` on are shown together.
+fn hundredths(index: u64, frames: u64, rate: Rate) -> u16 {
+    let ticks = rate.ticks_of_frames(index, frames, 100);
+    ticks.clamp(SHORTEST, u64::from(u16::MAX)) as u16
 }
 
 #[cfg(test)]
@@ -203,8 +213,10 @@ mod tests {
 
     #[test]
     fn times_add_up() {
-        let total: u64 = (0..24).map(|k| u64::from(hundredths(k, Rate::of(24.0)))).sum();
+        let total: u64 = (0..24).map(|k| u64::from(hundredths(k, 1, Rate::of(24.0)))).sum();
         assert_eq!(total, 100);
-        assert_eq!(hundredths(0, Rate::of(1000.0)), 2);
+        assert_eq!(hundredths(0, 1, Rate::of(1000.0)), 2);
+        let twos: u64 = (0..12).map(|k| u64::from(hundredths(2 * k, 2, Rate::of(24.0)))).sum();
+        assert_eq!(twos, 100);
     }
 }

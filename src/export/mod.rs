@@ -44,7 +44,7 @@ pub use error::{ExportError, WriteError};
 pub use ffmpeg::{VideoKind, VideoWriter};
 pub use gif::{Backdrop, FASTEST_GIF, GifWriter};
 pub use gltf::{LAYER_GAP, PIXELS_A_UNIT, gltf_bytes};
-pub use keyed::{Approximation, KeyOptions, KeyReport, KeyedError, KeyedVector, SampleTiming};
+pub use keyed::{Approximation, KeyInterpolation, KeyOptions, KeyReport, KeyedError, KeyedVector, SampleTiming};
 pub use keys::{Keys, place_keys};
 pub use motion_error::{LayerFault, MotionError};
 #[cfg(feature = "shape3d")]

@@ -1,6 +1,6 @@
 //! Animated SVG (SMIL): a document that plays in a browser without a script.
 //!
-//! Attributes that change have an `<animate>` child with keys of their own, linear between them; every key of a path has the
+//! Attributes that change have an `<animate>` child with keys of their own, linear between them or held; every key of a path has the
 //! same absolute `M`, `C` and `Z` commands. What does not change has none. A loop repeats for ever and its last key is its
 //! first; anything else stops at its last frame.
 //!
@@ -11,7 +11,7 @@
 //! - The map of a radial gradient is animated as shift, turn, shear and scale, since SVG has no animated matrix.
 
 use super::svg::{Element, document, number};
-use super::{KeyOptions, KeyReport, KeyedError, KeyedVector, Repetition, SampleTiming};
+use super::{KeyInterpolation, KeyOptions, KeyReport, KeyedError, KeyedVector, Repetition, SampleTiming};
 
 /// Decimals of lengths: a hundredth of a pixel is far below the error of the keys, and the file is mostly lengths.
 const DECIMALS: usize = 2;
@@ -35,19 +35,21 @@ pub(super) struct Clock {
     last: usize,
     duration_s: f64,
     repetition: Repetition,
+    interpolation: KeyInterpolation,
 }
 
 impl Clock {
-    pub(super) fn new(timing: &SampleTiming) -> Self {
+    pub(super) fn new(timing: &SampleTiming, interpolation: KeyInterpolation) -> Self {
         let last = timing.sample_count() - 1;
         Self {
             last,
             duration_s: timing.frame_of(last) / timing.fps,
             repetition: timing.repetition,
+            interpolation,
         }
     }
 
-    /// An attribute that is linear between the samples `keys`; a single one stands for all time.
+    /// An attribute with keys at the samples `keys`; a single one stands for all time.
     pub(super) fn animate(
         &self,
         element: &mut Element,
@@ -63,10 +65,10 @@ impl Clock {
             return;
         }
         let animation = Element::new("animate").with("attributeName", name);
-        element.push(self.timed(animation, &values, &self.linear_times(keys)));
+        element.push(self.keyed(animation, &values, keys));
     }
 
-    /// A part of a gradient's map that is linear between the samples `keys`, after the parts before it.
+    /// A part of a gradient's map with keys at the samples `keys`, after the parts before it.
     pub(super) fn transform(
         &self,
         element: &mut Element,
@@ -79,7 +81,7 @@ impl Clock {
             .with("attributeName", "gradientTransform")
             .with("type", kind)
             .with("additive", "sum");
-        element.push(self.timed(animation, &values, &self.linear_times(keys)));
+        element.push(self.keyed(animation, &values, keys));
     }
 
     /// An attribute that jumps: the samples from which it has a value, and the values.
@@ -89,13 +91,7 @@ impl Clock {
         if changes.len() < 2 || self.last == 0 {
             return;
         }
-        // Rounded down, and one decimal less: not a moment late. Players round the duration to microseconds and these times to
-        // single precision, and a time that meets a frame's own exactly may come out on either side of it.
-        let whole = 10_f64.powi(TIME_DECIMALS as i32);
-        let times: Vec<f64> = changes
-            .iter()
-            .map(|(sample, _)| ((self.share(*sample) * whole).floor() - 1.0).max(0.0) / whole)
-            .collect();
+        let times: Vec<f64> = changes.iter().map(|(sample, _)| self.jump(*sample)).collect();
         let values: Vec<String> = changes.iter().map(|(_, value)| value.clone()).collect();
         let animation = Element::new("animate")
             .with("attributeName", name)
@@ -103,8 +99,26 @@ impl Clock {
         element.push(self.timed(animation, &values, &times));
     }
 
-    fn linear_times(&self, keys: &[usize]) -> Vec<f64> {
-        keys.iter().map(|key| self.share(*key)).collect()
+    /// An animation between keys as they are interpolated.
+    fn keyed(&self, animation: Element, values: &[String], keys: &[usize]) -> Element {
+        match self.interpolation {
+            KeyInterpolation::Linear => {
+                let times: Vec<f64> = keys.iter().map(|key| self.share(*key)).collect();
+                self.timed(animation, values, &times)
+            }
+            KeyInterpolation::Held => {
+                let times: Vec<f64> = keys.iter().map(|key| self.jump(*key)).collect();
+                self.timed(animation.with("calcMode", "discrete"), values, &times)
+            }
+        }
+    }
+
+    /// When a value jumps to that of a sample: the sample's time rounded down, and one decimal less, so not a moment late. Players
+    /// round the duration to microseconds and these times to single precision, and a time that meets a frame's own exactly
+    /// may come out on either side of it.
+    fn jump(&self, sample: usize) -> f64 {
+        let whole = 10_f64.powi(TIME_DECIMALS as i32);
+        ((self.share(sample) * whole).floor() - 1.0).max(0.0) / whole
     }
 
     fn share(&self, sample: usize) -> f64 {

@@ -43,7 +43,12 @@ impl Rate {
 
     /// How many ticks frame `index` is shown, of which a second has `ticks`.
     pub(super) fn ticks_of(self, index: u64, ticks: u32) -> u64 {
-        self.start(index + 1, ticks) - self.start(index, ticks)
+        self.ticks_of_frames(index, 1, ticks)
+    }
+
+    /// How many ticks `frames` frames from `index` on are shown together, of which a second has `ticks`.
+    pub(super) fn ticks_of_frames(self, index: u64, frames: u64, ticks: u32) -> u64 {
+        self.start(index + frames, ticks) - self.start(index, ticks)
     }
 
     /// The tick nearest to the start of frame `index`.
@@ -92,5 +97,6 @@ mod tests {
         assert_eq!(total(23.976, 1000, 24_000), 1_001_000);
         let shown: Vec<u64> = (0..3).map(|k| Rate::of(30.0).ticks_of(k, 100)).collect();
         assert_eq!(shown, [3, 4, 3]);
+        assert_eq!(Rate::of(30.0).ticks_of_frames(1, 2, 100), 7);
     }
 }

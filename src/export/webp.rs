@@ -84,6 +84,15 @@ impl<W: Write + Seek> WebPWriter<W> {
     /// # Errors
     /// [`WriteError`] if the bytes cannot be written or the frame has another size.
     pub fn add(&mut self, frame: &Frame) -> Result<(), WriteError> {
+        self.add_held(frame, 1)
+    }
+
+    /// Adds a frame that is shown for the time of `frames` frames, at least 1, as one picture with a longer delay.
+    ///
+    /// # Errors
+    /// As [`Self::add`].
+    pub fn add_held(&mut self, frame: &Frame, frames: usize) -> Result<(), WriteError> {
+        let frames = frames.max(1) as u64;
         if [frame.width, frame.height] != self.size {
             return Err(WriteError::unsuitable("all frames of a WebP have one size"));
         }
@@ -91,7 +100,7 @@ impl<W: Write + Seek> WebPWriter<W> {
         // Places are stored halved.
         let change = self.changes.next(frame, 2);
         let pixels = lossless(&change.part)?;
-        let shown = self.rate.ticks_of(self.count, TICKS).min(LONGEST);
+        let shown = self.rate.ticks_of_frames(self.count, frames, TICKS).min(LONGEST);
         let mut data = Vec::with_capacity(FRAME_HEADER + pixels.len());
         for field in [
             change.left / 2,
@@ -104,7 +113,7 @@ impl<W: Write + Seek> WebPWriter<W> {
         }
         data.push(REPLACE);
         data.extend(pixels);
-        self.count += 1;
+        self.count += frames;
         self.write(&chunk(b"ANMF", &data))
     }
 

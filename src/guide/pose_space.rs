@@ -126,9 +126,50 @@
 //! ]
 //! ```
 //!
-//! Two equal keys in a row are a hold: the curve comes to rest at the first and leaves from the second. A loop whose last key lies where its first one
+//! Two equal keys in a row are a rest: the curve comes to rest at the first and leaves from the second. A loop whose last key lies where its first one
 //! does ends there; any other loop takes the mean time between keys to return. With keys, `loop` is `false` unless the file says otherwise.
 //! `turns` of a pose adds whole turns to its rotation, for a figure that spins on its way.
+//!
+//! # Spacing charts
+//!
+//! Where the drawings before a key lie is its `spacing`, as marks of an animator's chart: fractions of the way from the key before (0) to
+//! this key (1), at even steps of the time between them.
+//!
+//! ```toml
+//! [animation]
+//! fps = 10
+//! keys = [
+//!   { time = 0.0, at = [0.0, 0.0] },
+//!   { time = 0.5, at = [1.0, 0.0], spacing = [0.1, 0.3, 0.6, 0.85] },    # slow out of the first key and into this one
+//! ]
+//! ```
+//!
+//! Four marks make five steps: here a frame each, so frames 1 to 4 are at the marks. At other rates the way goes on between the marks along a smooth curve
+//! that never turns back. The way is that of the path without the chart, by the curve's own parameter: the places passed are the
+//! same, only the times differ, and even marks change nothing. Equal marks rest. Marks lie between 0 and 1 and do not decrease: an anticipation or an overshoot is
+//! a place of its own, so give it a key. The first key has no spacing, nor has the way back of a loop that does not end where it begins.
+//!
+//! # On ones, twos and threes
+//!
+//! Drawn animation seldom has a drawing a frame. `hold` says for how many frames each is shown: 1, 2 or 3. A key may have a hold of its
+//! own, in force from that key up to the next one:
+//!
+//! ```toml
+//! [animation]
+//! hold = 2                     # 1 without it
+//! keys = [
+//!   { time = 0.0, at = [0.0, 0.0] },
+//!   { time = 1.0, at = [1.0, 0.0], hold = 1 },        # a quick part, on ones
+//!   { time = 1.5, at = [0.0, 0.0] },
+//! ]
+//! ```
+//!
+//! Drawings are counted from the first frame. At a key with a hold of its own, and at the key after it, the count begins anew; other keys
+//! leave it alone, so a path that was recorded, with keys at any time, plays evenly. The count may then pass over a key between two drawings: give
+//! it a hold, and it is drawn. A key between two frames is at the later one. In a loop the count begins anew each time around.
+//!
+//! Numbered files are still one a frame, those of a drawing byte for byte the same; GIF, APNG and WebP show one picture for longer, and animated SVG
+//! and Lottie jump from drawing to drawing. glTF and Spine have the held frames as keys, between which they move.
 //!
 //! Where weights are given instead of a place, no place is needed:
 //!

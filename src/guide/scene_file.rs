@@ -101,7 +101,8 @@
 //! size = [1280, 720]              # [1280, 720], or the canvas where the camera shows it
 //! background = "transparent"      # "transparent": "white", "black", "#rrggbb", "#rrggbbaa"
 //! camera = "fit"                  # "fit": "drawing"
-//! keys = [ { time = 0.0, at = [0.0, 0.0] }, { time = 1.0, at = [1.0, 0.0] } ]     # through all poses
+//! hold = 1                        # 1: 2 or 3 frames a drawing; a key may have its own
+//! keys = [ { time = 0.0, at = [0.0, 0.0] }, { time = 1.0, at = [1.0, 0.0], spacing = [0.1, 0.5] } ]     # through all poses, evenly
 //! ```
 //!
 //! A scene with layers has these keys besides:

@@ -290,6 +290,6 @@ impl Character {
     /// # Errors
     /// As [`Self::posed_at`].
     pub fn posed(&self, animation: &Animation, index: usize) -> Result<Posed, PipelineError> {
-        self.posed_at(&animation.at(animation.time_of_frame(index)))
+        self.posed_at(&animation.place_of_frame(index))
     }
 }

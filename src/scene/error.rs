@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::shape::ShapeProblem;
+use crate::animation::AnimationError;
 
 /// A problem of a scene file and its place.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -156,6 +157,9 @@ pub enum SceneProblem {
         /// The time before.
         before: f64,
     },
+    /// A key of the animation that is none.
+    #[error(transparent)]
+    Animation(#[from] AnimationError),
     /// Something that only scenes of shapes in space have.
     #[error(transparent)]
     Shape(#[from] ShapeProblem),

@@ -167,6 +167,7 @@ pub(super) struct AnimationTable {
     pub(super) size: Option<Spanned<Vec<i64>>>,
     pub(super) background: Option<Spanned<String>>,
     pub(super) camera: Option<Spanned<String>>,
+    pub(super) hold: Option<Spanned<i64>>,
     pub(super) keys: Option<Spanned<Vec<Spanned<KeyTable>>>>,
 }
 
@@ -175,4 +176,6 @@ pub(super) struct AnimationTable {
 pub(super) struct KeyTable {
     pub(super) time: f64,
     pub(super) at: Vec<f64>,
+    pub(super) hold: Option<Spanned<i64>>,
+    pub(super) spacing: Option<Spanned<Vec<Spanned<f64>>>>,
 }

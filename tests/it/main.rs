@@ -28,6 +28,7 @@ mod shape;
 mod shape_data;
 mod sheets;
 mod textures;
+mod timing;
 mod truth;
 mod workbench;
 mod workshop;

@@ -15,12 +15,12 @@ pub(super) fn run(job: Job<'_>) -> anyhow::Result<()> {
         &mut file,
         job.size(),
         animation.fps,
-        job.numbers.len(),
+        frames::drawings(animation, &job.numbers).len(),
         job.repetition(),
     )
     .map_err(refusal)?;
-    frames::in_order(&character, animation, &job.numbers, &progress, |frame| {
-        Ok(writer.add(frame).map_err(refusal)?)
+    frames::in_order(&character, animation, &job.numbers, &progress, |frame, shown| {
+        Ok(writer.add_held(frame, shown.len()).map_err(refusal)?)
     })?;
     writer.finish().map_err(refusal)?;
     file.commit()?;

@@ -131,7 +131,7 @@ fn certified(
     animation: &Animation,
     number: usize,
 ) -> anyhow::Result<Certified> {
-    let place = animation.at(animation.time_of_frame(number - 1));
+    let place = animation.place_of_frame(number - 1);
     let weights = character.weights_at(&place)?;
     let posed = character.posed_of(&weights)?;
     let shapes = character.layers();

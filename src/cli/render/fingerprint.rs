@@ -5,7 +5,7 @@
 //! of another.
 
 use anyhow::Context as _;
-use inbetween::animation::Background;
+use inbetween::animation::{Animation, Background};
 use inbetween::export::Label;
 use inbetween::pipeline::CameraRule;
 use sha2::{Digest as _, Sha256};
@@ -42,10 +42,11 @@ impl Fingerprint {
         Ok(fingerprint)
     }
 
-    /// What frame `number` carries.
-    pub(super) fn label(&self, number: usize) -> Label {
+    /// What frame `number`, counted from 1, carries: the same as every frame that shows its drawing, whose files are then equal.
+    pub(super) fn label(&self, animation: &Animation, number: usize) -> Label {
+        let drawn = animation.drawn_frame(number.saturating_sub(1)) + 1;
         let mut of_frame = Self(self.0.clone());
-        of_frame.add(&number.to_le_bytes());
+        of_frame.add(&drawn.to_le_bytes());
         let digits: String = of_frame.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
         Label::new(&digits)
     }

@@ -36,8 +36,8 @@ pub(super) fn run(job: Job<'_>) -> anyhow::Result<()> {
         job.repetition(),
     )
     .map_err(refusal)?;
-    frames::in_order(&character, animation, &job.numbers, &progress, |frame| {
-        Ok(writer.add(frame).map_err(refusal)?)
+    frames::in_order(&character, animation, &job.numbers, &progress, |frame, shown| {
+        Ok(writer.add_held(frame, shown.len()).map_err(refusal)?)
     })?;
     writer.finish().map_err(refusal)?;
     file.commit()?;

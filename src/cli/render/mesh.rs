@@ -7,6 +7,7 @@ use inbetween::render::puppet::{Puppet, PuppetFrame};
 use rayon::prelude::*;
 
 use super::job::Job;
+use crate::cli::frames::drawings;
 
 /// Writes one `.glb` file.
 pub(super) fn glb(job: Job<'_>) -> anyhow::Result<()> {
@@ -60,15 +61,15 @@ impl Take {
         let progress = job.progress();
         let animation = job.animation();
         let puppet = character.puppet();
-        let mut frames: Vec<PuppetFrame> = job
-            .numbers
+        let drawings: Vec<Vec<PuppetFrame>> = drawings(animation, &job.numbers)
             .par_iter()
-            .map(|number| {
-                let posed = character.posed(animation, number - 1)?;
-                progress.advance();
-                Ok(character.puppet_frame(&puppet, &posed))
+            .map(|shown| {
+                let posed = character.posed(animation, shown[0] - 1)?;
+                shown.iter().for_each(|_| progress.advance());
+                Ok(vec![character.puppet_frame(&puppet, &posed); shown.len()])
             })
             .collect::<anyhow::Result<_>>()?;
+        let mut frames = drawings.concat();
         let first = job.numbers.first().copied().unwrap_or(1);
         let mut times: Vec<f64> = (job.numbers.iter())
             .map(|number| (number - first) as f64 / animation.fps)

@@ -10,9 +10,10 @@ pub(super) fn run(job: Job<'_>) -> anyhow::Result<()> {
     let mut sheet = SpriteSheet::new(job.output, &job.scene.short_name(), animation.fps)?;
     let character = job.character()?;
     let progress = job.progress();
-    let mut numbers = job.numbers.iter();
-    frames::in_order(&character, animation, &job.numbers, &progress, |frame| {
-        numbers.next().map_or(Ok(()), |number| sheet.add(*number, frame))?;
+    frames::in_order(&character, animation, &job.numbers, &progress, |frame, shown| {
+        for number in shown {
+            sheet.add(*number, frame)?;
+        }
         Ok(())
     })?;
     sheet.finish()?;

@@ -1,7 +1,7 @@
 //! Curves that move: animated SVG, Lottie.
 
 use anyhow::bail;
-use inbetween::export::{KeyOptions, KeyReport, KeyedVector, PendingFile, Repetition, SampleTiming};
+use inbetween::export::{KeyInterpolation, KeyOptions, KeyReport, KeyedVector, PendingFile, Repetition, SampleTiming};
 use inbetween::pipeline::{Character, PipelineError};
 use inbetween::render::drawing::{VectorFrame, VectorNode};
 use rayon::prelude::*;
@@ -53,26 +53,42 @@ impl Take {
         let progress = job.progress();
         let is_whole = frame_count == job.animation().frame_count();
         let repetition = if is_whole { job.repetition() } else { Repetition::Once };
+        let is_held = job.animation().is_held();
         let start = draw(&character, job, first - 1, 0.0)?;
         let timing = SampleTiming {
             fps: job.animation().fps,
             frame_count,
-            samples_a_frame: if has_curves(&start.nodes) { SAMPLES_A_FRAME } else { 1 },
+            samples_a_frame: if has_curves(&start.nodes) && !is_held {
+                SAMPLES_A_FRAME
+            } else {
+                1
+            },
             repetition,
         };
         let step = timing.samples_a_frame;
         let samples: Vec<usize> = (0..timing.sample_count()).collect();
         let mut keyed = KeyedVector::empty(timing);
         for batch in samples.chunks(SAMPLES_A_THREAD * rayon::current_num_threads()) {
-            let frames: Vec<VectorFrame> = batch
+            // The end of a loop is its start, to the last bit.
+            let frame_of = |sample: usize| first - 1 + sample / step % job.animation().frame_count();
+            let drawings: Vec<&[usize]> = batch
+                .chunk_by(|a, b| {
+                    is_held && job.animation().drawn_frame(frame_of(*a)) == job.animation().drawn_frame(frame_of(*b))
+                })
+                .collect();
+            let frames: Vec<VectorFrame> = drawings
                 .par_iter()
-                .map(|sample| {
-                    // The end of a loop is its start, to the last bit.
-                    let (frame, part) = (sample / step % job.animation().frame_count(), sample % step);
-                    draw(&character, job, first - 1 + frame, part as f64 / step as f64)
+                .map(|shown| {
+                    draw(
+                        &character,
+                        job,
+                        frame_of(shown[0]),
+                        (shown[0] % step) as f64 / step as f64,
+                    )
                 })
                 .collect::<Result<_, _>>()?;
-            for (sample, frame) in batch.iter().zip(&frames) {
+            let shown = drawings.iter().zip(&frames);
+            for (sample, frame) in shown.flat_map(|(shown, frame)| shown.iter().map(move |sample| (sample, frame))) {
                 keyed.add(frame)?;
                 if sample % step == 0 && sample / step < frame_count {
                     progress.advance();
@@ -81,6 +97,9 @@ impl Take {
         }
         let mut options = KeyOptions::default();
         options.max_error_px = job.max_error;
+        if is_held {
+            options.interpolation = KeyInterpolation::Held;
+        }
         Ok(Self {
             character,
             keyed,
@@ -101,9 +120,13 @@ impl Take {
     }
 }
 
-/// The character as curves at `part` of the way from frame `index`, counted from 0, to the next one.
+/// The character as curves at `part` of the way from frame `index`, counted from 0, to the next one; in an animation with holds as
+/// in that frame.
 fn draw(character: &Character, job: &Job<'_>, index: usize, part: f64) -> Result<VectorFrame, PipelineError> {
     let animation = job.animation();
+    if animation.is_held() {
+        return Ok(character.draw(&character.posed(animation, index)?));
+    }
     let time = animation.time_of_frame(index);
     let next = animation.time_of_frame(index + 1);
     let posed = character.posed_at(&animation.at(time + (next - time) * part))?;

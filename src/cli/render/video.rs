@@ -40,8 +40,11 @@ fn video(job: &Job<'_>, kind: VideoKind) -> anyhow::Result<()> {
     let mut writer = VideoWriter::new(file, job.size(), animation.fps, kind)?;
     let character = job.character()?;
     let progress = job.progress();
-    frames::in_order(&character, animation, &job.numbers, &progress, |frame| {
-        Ok(writer.add(frame)?)
+    frames::in_order(&character, animation, &job.numbers, &progress, |frame, shown| {
+        for _ in shown {
+            writer.add(frame)?;
+        }
+        Ok(())
     })?;
     writer.finish()?;
     job.done(&character, &progress)

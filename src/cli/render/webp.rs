@@ -12,8 +12,8 @@ pub(super) fn run(job: Job<'_>) -> anyhow::Result<()> {
     let progress = job.progress();
     let animation = job.animation();
     let mut writer = WebPWriter::new(&mut file, job.size(), animation.fps, job.repetition()).map_err(refusal)?;
-    frames::in_order(&character, animation, &job.numbers, &progress, |frame| {
-        Ok(writer.add(frame).map_err(refusal)?)
+    frames::in_order(&character, animation, &job.numbers, &progress, |frame, shown| {
+        Ok(writer.add_held(frame, shown.len()).map_err(refusal)?)
     })?;
     writer.finish().map_err(refusal)?;
     file.commit()?;

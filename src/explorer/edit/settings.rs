@@ -44,7 +44,16 @@ pub(super) fn set_keys(
     fps: Option<f64>,
 ) -> Result<(), Refusal> {
     let animation = table(document, "animation")?;
-    let key = |key: &KeyText| -> Value { inline([("time", key.time.into()), ("at", numbers_value(&key.at))]).into() };
+    let key = |key: &KeyText| -> Value {
+        let mut table = inline([("time", key.time.into()), ("at", numbers_value(&key.at))]);
+        if let Some(hold) = key.hold {
+            table.insert("hold", hold.into());
+        }
+        if !key.spacing.is_empty() {
+            table.insert("spacing", numbers_value(&key.spacing));
+        }
+        table.into()
+    };
     if let Some(fps) = fps {
         set_value(animation, "fps", fps.into());
     }

@@ -100,7 +100,7 @@ fn settings_and_keys_are_set_and_removed() {
         json!([
             {"op": "set", "table": "texture", "key": "sharpness", "value": 0.7},
             {"op": "set", "table": "blend", "key": "stretch", "value": "log"},
-            {"op": "set_keys", "keys": [{"time": 0, "at": [0, 0]}, {"time": 1.5, "at": [1, 0]}], "loop": true, "fps": 12},
+            {"op": "set_keys", "keys": [{"time": 0, "at": [0, 0]}, {"time": 1.5, "at": [1, 0]}, {"time": 2, "at": [0, 1], "hold": 2, "spacing": [0.25, 1]}], "loop": true, "fps": 12},
         ]),
     );
     for line in [
@@ -109,6 +109,7 @@ fn settings_and_keys_are_set_and_removed() {
         "loop = true",
         "fps = 12.0",
         "  { time = 1.5, at = [1.0, 0.0] },",
+        "  { time = 2.0, at = [0.0, 1.0], hold = 2, spacing = [0.25, 1.0] },",
     ] {
         assert!(set.text.lines().any(|l| l == line), "{line} in {}", set.text);
     }

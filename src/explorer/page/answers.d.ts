@@ -104,12 +104,16 @@ export interface Animation {
   loop: boolean;
   size: number[];
   background: string;
+  /** Frames for which a drawing is shown. */
+  hold: number;
   own_keys: boolean;
   keys: Key[];
 }
 export interface Key {
   time: number;
   at: Place;
+  hold?: number;
+  spacing?: number[];
 }
 export type Provider = 'biharmonic' | 'rbf';
 export type Stretch = 'linear' | 'limited' | 'log';
@@ -247,6 +251,8 @@ export interface Path {
   duration: number;
   fps: number;
   start?: number;
+  /** Whether places are held from frame to frame. */
+  held?: boolean;
   at: Place[];
 }
 /** `api/gesture`. */

@@ -233,13 +233,25 @@ function pseudoSection() {
 
 // Keys.
 
+/**
+ * What a key says about the time of drawings, shortly.
+ * @type {(key: import('./answers.js').Key) => string}
+ */
+const timingOf = ({ hold, spacing }) => [hold && `on ${['ones', 'twos', 'threes'][hold - 1]}`, spacing && `spaced ${spacing.join(' ')}`]
+  .filter(Boolean).join(', ');
+
 function buildKeys() {
   const { animation } = store.scene;
   if (!animation) return panels.keys.replaceChildren(h('p', { class: 'empty' }, 'There is no animation.'));
-  const keys = animation.keys.map((key) => ({ time: key.time, at: key.at.slice() }));
+  const keys = animation.keys.map((key) => ({ ...key, at: key.at.slice() }));
   const closes = animation.loop && keys.length > 2 && keys[0].at.join() === keys[keys.length - 1].at.join();
   /** @type {(label: string) => Promise<unknown>} */
-  const changed = (label) => edit([{ op: 'set_keys', keys: keys.slice().sort((a, b) => a.time - b.time) }], label);
+  const changed = (label) => {
+    const sorted = keys.slice().sort((a, b) => a.time - b.time);
+    // The first key has no way that a chart could space.
+    delete sorted[0]?.spacing;
+    return edit([{ op: 'set_keys', keys: sorted }], label);
+  };
   const rows = keys.map((key, index) => h('tr', {},
     h('td', {}, numberField(`Time of key ${index + 1}`, () => key.time, (value) => {
       key.time = value;
@@ -251,12 +263,13 @@ function buildKeys() {
       key.at[d] = value;
       changed('move a key');
     }))),
+    h('td', { class: 'faint small' }, timingOf(key)),
     h('td', {}, iconButton('reach', `Go to key ${index + 1}`, () => moveTo(key.at.slice()))),
     h('td', {}, iconButton('trash', `Remove key ${index + 1}`, () => { keys.splice(index, 1); changed('remove a key'); }))));
   const names = keys[0]?.at.map((_, d) => h('th', { scope: 'col' }, 'xyz'[d] ?? `p${d + 1}`)) ?? [];
   /** @type {(text: string) => HTMLElement} */
   const unseen = (text) => h('th', {}, h('span', { class: 'unseen' }, text));
-  const headings = h('tr', {}, h('th', { scope: 'col' }, 'Time'), names, unseen('Go'), unseen('Remove'));
+  const headings = h('tr', {}, h('th', { scope: 'col' }, 'Time'), names, unseen('Timing'), unseen('Go'), unseen('Remove'));
   const { size } = animation;
   const sizes = [0, 1].map((d) => numberField(['Width', 'Height'][d], () => size[d],
     (v) => setting('animation', 'size', size.map((own, k) => (k === d ? Math.round(v) : own))), { step: 10 }));
@@ -275,6 +288,8 @@ function buildKeys() {
       }, icon('plus'), 'Key at the probe'))),
     section('Playing',
       row('Frame rate', numberField('Frames a second', () => animation.fps, (v) => setting('animation', 'fps', v), { step: 1 })),
+      row('Drawn on', segments('Drawn on', [['1', 'Ones'], ['2', 'Twos'], ['3', 'Threes']],
+        () => String(animation.hold), (v) => setting('animation', 'hold', Number(v)))),
       row('Frame size', ...sizes)));
 }
 

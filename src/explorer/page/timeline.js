@@ -29,12 +29,14 @@ let settings = { smoothing: 0.06, tolerance: 0.01, duration: null, loop: false }
 const duration = () => path?.duration ?? 0;
 
 /**
- * The place at a time: between the frames that the server has computed, straight.
+ * The place at a time: between the frames that the server has computed, straight, or the last one's if they are held.
  * @type {(path: Path, t: number) => Place}
  */
 function placeAt(path, t) {
   const { at, fps, start = 0 } = path;
   const here = clamp((t - start) * fps, 0, at.length - 1);
+  // Rounding must not show the frame before.
+  if (path.held) return at[Math.floor(here + 1e-6)];
   const [k, part] = [Math.floor(here), here % 1];
   const next = at[Math.min(k + 1, at.length - 1)];
   return at[k].map((value, d) => value + part * (next[d] - value));
@@ -164,7 +166,7 @@ function drawMarks() {
 function dragKey(event, index) {
   if (event.button !== 0) return;
   event.stopPropagation();
-  const keys = (store.scene.animation?.keys ?? []).map((key) => ({ time: key.time, at: key.at }));
+  const keys = (store.scene.animation?.keys ?? []).map((key) => ({ ...key }));
   const box = track.getBoundingClientRect();
   const start = keys[0].time;
   const total = duration();
@@ -232,7 +234,7 @@ function drawGesture() {
   hint.textContent = recording() ? 'Recording… let go to end the gesture.'
     : isArmed() ? 'Press in the plane and drag: the gesture is recorded as you make it.'
       : store.scene?.animation?.own_keys
-        ? `${store.scene.animation.keys.length} keys. Drag one to move it in time; record to replace them.`
+        ? `${store.scene.animation.keys.length} keys. Drag one to move it in time; record to replace them, with their holds and spacing.`
         : 'The path visits every pose. Record a gesture, or add keys.';
   if (!store.gesture) {
     built = false;

@@ -1,13 +1,13 @@
 //! A drawing over time, sampled: what the writers of animated vector formats take.
 //!
-//! Frames of one drawing at even times -> one tree in which every number is the list of its values. Formats with keys
-//! interpolate linearly between them, so the samples lie closer than the frames: what is between two frames is then
-//! held to the same error as the frames are.
+//! Frames of one drawing at even times -> one tree in which every number is the list of its values. Where values are linear
+//! between keys, the samples lie closer than the frames: what is between two frames is then held to the same error as the
+//! frames are. Where keys are held ([`KeyInterpolation::Held`]), frames are all there is to sample.
 //!
 //! - All frames have the same nodes with equally many curves; a frame that has not is refused.
 //! - Pictures are kept for whole frames only, cut to what is drawn and each but once, as PNG.
 //! - A node that cannot be seen at some samples may be anywhere there: it is put on the straight line between where it
-//!   is seen last and where it is seen next, so that no keys are spent on it.
+//!   is seen last and where it is seen next, or stays where it is seen last if keys are held, so that no keys are spent on it.
 //!
 //! Memory: two numbers a control point and sample, and the files of the pictures.
 
@@ -15,9 +15,7 @@ mod planner;
 mod tree;
 
 pub(super) use planner::Planner;
-pub(super) use tree::{
-    GradientTrack, Group, Node, PaintTrack, Picture, Piece, Shape, Siblings, StrokeTrack, runs, settled,
-};
+pub(super) use tree::{GradientTrack, Group, Node, PaintTrack, Picture, Piece, Shape, Siblings, StrokeTrack, runs};
 
 use super::Repetition;
 use crate::render::VectorFrame;
@@ -62,6 +60,19 @@ pub struct KeyOptions {
     pub max_error_px: f64,
     /// How far a colour or an opacity may be from what it should be, of 255. Default: 1.
     pub max_error_steps: f64,
+    /// What is shown between keys. Default: linear.
+    pub interpolation: KeyInterpolation,
+}
+
+/// What is shown between two keys.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum KeyInterpolation {
+    /// Values are linear in time.
+    #[default]
+    Linear,
+    /// Every key is held until the next one, as in animation on twos: a sample that shows what the one before it shows costs nothing.
+    Held,
 }
 
 impl Default for KeyOptions {
@@ -69,6 +80,7 @@ impl Default for KeyOptions {
         Self {
             max_error_px: 0.25,
             max_error_steps: 1.0,
+            interpolation: KeyInterpolation::default(),
         }
     }
 }

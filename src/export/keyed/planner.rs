@@ -1,6 +1,8 @@
 //! Which samples become keys.
 
-use super::{Approximation, KeyOptions, KeyReport, SampleTiming};
+use std::ops::{Add, Mul, Sub};
+
+use super::{Approximation, KeyInterpolation, KeyOptions, KeyReport, SampleTiming};
 use crate::export::place_keys;
 use crate::math::Point;
 
@@ -27,6 +29,42 @@ impl<'a> Planner<'a> {
             options,
             report: KeyReport::default(),
         }
+    }
+
+    /// Puts values that are not seen where they cost no keys: on the straight line, in time, between where they are seen before
+    /// and after, or where keys are held where they are seen before.
+    pub(in crate::export) fn settled<T>(&self, samples: &[Vec<T>], seen: &[bool]) -> Vec<Vec<T>>
+    where
+        T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
+    {
+        let mut settled = samples.to_vec();
+        let mut before = None;
+        let mut k = 0;
+        while k < samples.len() {
+            if seen[k] {
+                before = Some(k);
+                k += 1;
+                continue;
+            }
+            let after = (k..samples.len()).find(|k| seen[*k]);
+            let end = after.unwrap_or(samples.len());
+            for (j, sample) in settled.iter_mut().enumerate().take(end).skip(k) {
+                *sample = match (before, after) {
+                    (Some(a), Some(b)) if self.options.interpolation == KeyInterpolation::Linear => {
+                        let t = (j - a) as f64 / (b - a) as f64;
+                        samples[a]
+                            .iter()
+                            .zip(&samples[b])
+                            .map(|(a, b)| *a + (*b - *a) * t)
+                            .collect()
+                    }
+                    (Some(only), _) | (None, Some(only)) => samples[only].clone(),
+                    (None, None) => samples[0].clone(),
+                };
+            }
+            k = end;
+        }
+        settled
     }
 
     /// The keys of points given in pixels, one list a sample; the first sample alone if they rest.
@@ -67,6 +105,11 @@ impl<'a> Planner<'a> {
         if samples.len() < 2 || from_first <= rest.min(tolerance) {
             return (vec![0], from_first);
         }
+        if self.options.interpolation == KeyInterpolation::Held {
+            let (keys, worst) = held_keys(samples, tolerance);
+            self.report.keys += keys.len();
+            return (keys, worst);
+        }
         let keys = place_keys(&self.times, samples, tolerance);
         let is_rest = keys.indices.len() == 2 && distance(&samples[0], &samples[samples.len() - 1]) <= rest;
         if is_rest && from_first <= tolerance {
@@ -75,6 +118,22 @@ impl<'a> Planner<'a> {
         self.report.keys += keys.indices.len();
         (keys.indices, keys.worst)
     }
+}
+
+/// The samples that are further than `tolerance` from the key before, and the largest distance of any other.
+fn held_keys(samples: &[Vec<Point>], tolerance: f64) -> (Vec<usize>, f64) {
+    let (mut keys, mut last, mut worst) = (vec![0], 0, 0.0);
+    for (k, sample) in samples.iter().enumerate().skip(1) {
+        let away = distance(sample, &samples[last]);
+        // What is not finite is a key.
+        if away <= tolerance {
+            worst = f64::max(worst, away);
+        } else {
+            last = k;
+            keys.push(k);
+        }
+    }
+    (keys, worst)
 }
 
 /// The largest distance of two points of the same place in two lists.

@@ -210,8 +210,58 @@ fn frames_that_differ_in_kind_are_refused() {
 fn unseen_points_lie_between_seen_ones() {
     let samples: Vec<Vec<f64>> = [5.0, 0.0, 9.0, 9.0, 3.0, 7.0].map(|value| vec![value]).to_vec();
     let seen = [false, true, false, false, true, false];
-    assert_eq!(settled(&samples, &seen).concat(), [0.0, 0.0, 1.0, 2.0, 3.0, 3.0]);
-    assert_eq!(settled(&samples, &[true; 6]), samples);
+    let (mut options, timing) = (KeyOptions::default(), timing(Repetition::Once));
+    let planner = Planner::new(&timing, &options);
+    assert_eq!(
+        planner.settled(&samples, &seen).concat(),
+        [0.0, 0.0, 1.0, 2.0, 3.0, 3.0]
+    );
+    assert_eq!(planner.settled(&samples, &[true; 6]), samples);
+    options.interpolation = KeyInterpolation::Held;
+    let planner = Planner::new(&timing, &options);
+    assert_eq!(
+        planner.settled(&samples, &seen).concat(),
+        [0.0, 0.0, 0.0, 0.0, 3.0, 3.0]
+    );
+}
+
+#[test]
+fn held_keys_are_where_what_is_shown_changes() {
+    let timing = SampleTiming {
+        samples_a_frame: 1,
+        ..timing(Repetition::Once)
+    };
+    let drawn = |sample: usize| frame_of(vec![shape(bar("a", 0.2 * (sample / 2) as f64))]);
+    let keyed = KeyedVector::new(timing, (0..9).map(drawn)).expect("alike");
+    let options = KeyOptions {
+        interpolation: KeyInterpolation::Held,
+        ..KeyOptions::default()
+    };
+    let (text, report) = keyed.to_lottie("bar", &options).expect("Lottie");
+    assert_eq!((report.keys, report.worst_px), (5, 0.0));
+    let lottie: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let mut keys = Vec::new();
+    moments(&lottie, &mut keys);
+    assert_eq!(keys, [(0.0, true), (2.0, true), (4.0, true), (6.0, true), (8.0, false)]);
+    let (text, report) = keyed.to_smil(&options).expect("SVG");
+    assert_eq!(report.keys, 5);
+    assert!(text.contains("calcMode=\"discrete\""), "{text}");
+    assert!(
+        text.contains("keyTimes=\"0;0.249999;0.499999;0.749999;0.999999\""),
+        "{text}"
+    );
+}
+
+/// The times of all key frames, and whether they are held.
+fn moments(value: &serde_json::Value, found: &mut Vec<(f64, bool)>) {
+    if let (Some(time), Some(_)) = (value["t"].as_f64(), value.get("s")) {
+        found.push((time, value["h"] == 1));
+    }
+    match value {
+        serde_json::Value::Array(list) => list.iter().for_each(|value| moments(value, found)),
+        serde_json::Value::Object(map) => map.values().for_each(|value| moments(value, found)),
+        _ => {}
+    }
 }
 
 #[test]

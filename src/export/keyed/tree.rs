@@ -1,7 +1,6 @@
 //! The tree of a sampled drawing.
 
 use std::collections::BTreeMap;
-use std::ops::{Add, Mul, Sub};
 
 use super::KeyedError;
 use crate::export::{box_of, png_bytes};
@@ -435,39 +434,4 @@ impl StrokeTrack {
         self.dash_offset.push(stroke.dash_offset);
         self.paint.add(&stroke.paint)
     }
-}
-
-/// Puts values that are not seen on the straight line, in time, between where they are seen before and after.
-pub(in crate::export) fn settled<T>(samples: &[Vec<T>], seen: &[bool]) -> Vec<Vec<T>>
-where
-    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
-{
-    let mut settled = samples.to_vec();
-    let mut before = None;
-    let mut k = 0;
-    while k < samples.len() {
-        if seen[k] {
-            before = Some(k);
-            k += 1;
-            continue;
-        }
-        let after = (k..samples.len()).find(|k| seen[*k]);
-        let end = after.unwrap_or(samples.len());
-        for (j, sample) in settled.iter_mut().enumerate().take(end).skip(k) {
-            *sample = match (before, after) {
-                (Some(a), Some(b)) => {
-                    let t = (j - a) as f64 / (b - a) as f64;
-                    samples[a]
-                        .iter()
-                        .zip(&samples[b])
-                        .map(|(a, b)| *a + (*b - *a) * t)
-                        .collect()
-                }
-                (Some(only), None) | (None, Some(only)) => samples[only].clone(),
-                (None, None) => samples[0].clone(),
-            };
-        }
-        k = end;
-    }
-    settled
 }

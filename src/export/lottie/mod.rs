@@ -19,7 +19,7 @@ mod property;
 
 use serde_json::{Value, json};
 
-use super::keyed::{Group, Node, Picture, Piece, Planner, Shape, Siblings, runs, settled};
+use super::keyed::{Group, Node, Picture, Piece, Planner, Shape, Siblings, runs};
 use super::svg::data_uri;
 use super::{KeyOptions, KeyReport, KeyedError, KeyedVector};
 use crate::math::Point;
@@ -43,7 +43,7 @@ impl KeyedVector {
         let mut writer = LottieWriter {
             keyed: self,
             planner: Planner::new(&self.timing, options),
-            timeline: Timeline::new(&self.timing),
+            timeline: Timeline::new(&self.timing, options.interpolation),
             assets: Vec::new(),
             images: vec![None; self.pictures.files.len()],
         };
@@ -140,7 +140,7 @@ impl LottieWriter<'_> {
         let opacity = self.percent(&group.opacity);
         let mut layer = self.reference(&group.id, &asset, opacity);
         if let Some(clip) = &group.clip {
-            let points = settled(&clip.points, seen);
+            let points = self.planner.settled(&clip.points, seen);
             layer["hasMask"] = json!(true);
             layer["masksProperties"] = self.masks(&clip.rings, &points);
         }
@@ -182,7 +182,7 @@ impl LottieWriter<'_> {
     }
 
     fn shape(&mut self, shape: &Shape, seen: &[bool]) -> Value {
-        let points = settled(&shape.points, seen);
+        let points = self.planner.settled(&shape.points, seen);
         let keys = self.planner.pixels(&points);
         let mut items = Vec::new();
         let mut start = 0;

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::LottieWriter;
 use super::property::{pair, rounded};
-use crate::export::keyed::{Approximation, GradientTrack, PaintTrack, StrokeTrack, settled};
+use crate::export::keyed::{Approximation, GradientTrack, PaintTrack, StrokeTrack};
 use crate::export::svg::linear_ends;
 use crate::math::Point;
 use crate::math::point::cross;
@@ -68,7 +68,7 @@ impl LottieWriter<'_> {
 
     fn solid(&mut self, kind: &str, colours: &[[f64; 4]], seen: &[bool]) -> Map<String, Value> {
         let rgba: Vec<Vec<f64>> = colours.iter().map(|colour| colour.to_vec()).collect();
-        let rgba = settled(&rgba, seen);
+        let rgba = self.planner.settled(&rgba, seen);
         let rgb: Vec<Vec<f64>> = rgba.iter().map(|c| c[..3].to_vec()).collect();
         let alpha: Vec<f64> = rgba.iter().map(|c| c[3]).collect();
         let keys = self.planner.steps(&rgb);
@@ -83,7 +83,7 @@ impl LottieWriter<'_> {
 
     fn length(&mut self, values: &[f64], seen: &[bool]) -> Value {
         let samples: Vec<Vec<f64>> = values.iter().map(|value| vec![*value]).collect();
-        let samples = settled(&samples, seen);
+        let samples = self.planner.settled(&samples, seen);
         let keys = self.planner.lengths(&samples);
         self.timeline.scalar(&keys, |k| rounded(samples[k][0], 3))
     }
@@ -112,7 +112,7 @@ impl LottieWriter<'_> {
                 }
             })
             .collect();
-        let ends = settled(&ends, seen);
+        let ends = self.planner.settled(&ends, seen);
         let keys = self.planner.pixels(&ends);
         let mut item = Map::from_iter([
             ("ty".to_owned(), json!(kind)),
@@ -144,7 +144,7 @@ impl LottieWriter<'_> {
                 values
             })
             .collect();
-        let flat = settled(&flat, seen);
+        let flat = self.planner.settled(&flat, seen);
         let keys = self.planner.steps(&flat);
         let count = gradient.stops.first().map_or(0, Vec::len);
         json!({"p": count, "k": self.timeline.list(&keys, |k| shares(&flat[k]))})

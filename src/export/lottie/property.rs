@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::export::SampleTiming;
+use crate::export::{KeyInterpolation, SampleTiming};
 use crate::math::Point;
 
 /// Decimals of lengths.
@@ -12,11 +12,15 @@ const DECIMALS: i32 = 2;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Timeline {
     timing: SampleTiming,
+    interpolation: KeyInterpolation,
 }
 
 impl Timeline {
-    pub(super) fn new(timing: &SampleTiming) -> Self {
-        Self { timing: *timing }
+    pub(super) fn new(timing: &SampleTiming, interpolation: KeyInterpolation) -> Self {
+        Self {
+            timing: *timing,
+            interpolation,
+        }
     }
 
     /// A property whose value is one number.
@@ -46,10 +50,12 @@ impl Timeline {
                 let (value, in_list) = value(*key);
                 let value = if in_list { Value::Array(vec![value]) } else { value };
                 let time = rounded(self.timing.frame_of(*key), 6);
-                if k + 1 < keys.len() {
-                    json!({"t": time, "s": value, "i": {"x": end, "y": end}, "o": {"x": start, "y": start}})
-                } else {
-                    json!({"t": time, "s": value})
+                match self.interpolation {
+                    _ if k + 1 == keys.len() => json!({"t": time, "s": value}),
+                    KeyInterpolation::Linear => {
+                        json!({"t": time, "s": value, "i": {"x": end, "y": end}, "o": {"x": start, "y": start}})
+                    }
+                    KeyInterpolation::Held => json!({"t": time, "s": value, "h": 1}),
                 }
             })
             .collect();

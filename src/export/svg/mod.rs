@@ -23,7 +23,6 @@ use text::{curves, rings};
 
 use super::keyed::{
     Group, KeyOptions, KeyReport, KeyedError, KeyedVector, Node, Picture, Planner, SampleTiming, Shape, Siblings, runs,
-    settled,
 };
 use super::smil::Clock;
 use super::{Label, Repetition};
@@ -66,7 +65,7 @@ pub(super) fn document(keyed: &KeyedVector, options: &KeyOptions, decimals: usiz
     let mut writer = SvgWriter {
         keyed,
         planner: Planner::new(&keyed.timing, options),
-        clock: Clock::new(&keyed.timing),
+        clock: Clock::new(&keyed.timing, options.interpolation),
         decimals,
         ids: Ids::default(),
         definitions: Vec::new(),
@@ -164,7 +163,7 @@ impl SvgWriter<'_> {
         self.share(&mut element, "opacity", &group.opacity);
         if let Some(clip) = &group.clip {
             let clip_name = self.ids.take(&format!("{name}-clip"));
-            let points = settled(&clip.points, seen);
+            let points = self.planner.settled(&clip.points, seen);
             let keys = self.planner.pixels(&points);
             let mut path = Element::new("path");
             let decimals = self.decimals;
@@ -182,7 +181,7 @@ impl SvgWriter<'_> {
 
     fn shape(&mut self, name: &str, shape: &Shape, seen: &[bool]) -> Element {
         let mut element = Element::new("path").with("id", name);
-        let points = settled(&shape.points, seen);
+        let points = self.planner.settled(&shape.points, seen);
         let keys = self.planner.pixels(&points);
         let decimals = self.decimals;
         self.clock.animate(&mut element, "d", &keys, |k| {

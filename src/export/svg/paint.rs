@@ -2,7 +2,7 @@
 
 use super::text::{colour, numbers};
 use super::{Element, SHARE_DECIMALS, SvgWriter, number};
-use crate::export::keyed::{GradientTrack, PaintTrack, StrokeTrack, settled};
+use crate::export::keyed::{GradientTrack, PaintTrack, StrokeTrack};
 use crate::math::Point;
 use crate::math::point::{cross, perpendicular};
 use crate::render::{LineCap, LineJoin, Placement, Spread};
@@ -68,7 +68,7 @@ impl SvgWriter<'_> {
             element.set("stroke-miterlimit", number(stroke.miter_limit, 3));
         }
         if stroke.dashes.iter().any(|dashes| !dashes.is_empty()) {
-            let dashes = settled(&stroke.dashes, seen);
+            let dashes = self.planner.settled(&stroke.dashes, seen);
             let keys = self.planner.lengths(&dashes);
             let decimals = self.decimals;
             self.clock
@@ -79,7 +79,7 @@ impl SvgWriter<'_> {
 
     fn length(&mut self, element: &mut Element, name: &'static str, values: &[f64], seen: &[bool]) {
         let samples: Vec<Vec<f64>> = values.iter().map(|value| vec![*value]).collect();
-        let samples = settled(&samples, seen);
+        let samples = self.planner.settled(&samples, seen);
         let keys = self.planner.lengths(&samples);
         let decimals = self.decimals;
         self.clock
@@ -88,7 +88,7 @@ impl SvgWriter<'_> {
 
     /// Red, green, blue and alpha as a colour and an opacity.
     fn colour(&mut self, element: &mut Element, names: [&'static str; 2], rgba: &[Vec<f64>], seen: &[bool]) {
-        let rgba = settled(rgba, seen);
+        let rgba = self.planner.settled(rgba, seen);
         let rgb: Vec<Vec<f64>> = rgba.iter().map(|c| c[..3].to_vec()).collect();
         let alpha: Vec<f64> = rgba.iter().map(|c| c[3]).collect();
         let keys = self.planner.steps(&rgb);
@@ -117,7 +117,7 @@ impl SvgWriter<'_> {
         for k in 0..gradient.stops.first().map_or(0, Vec::len) {
             let mut stop = Element::new("stop");
             let offsets: Vec<Vec<f64>> = gradient.stops.iter().map(|stops| vec![stops[k][0]]).collect();
-            let offsets = settled(&offsets, seen);
+            let offsets = self.planner.settled(&offsets, seen);
             let keys = self.planner.steps(&offsets);
             self.clock
                 .animate(&mut stop, "offset", &keys, |k| number(offsets[k][0], SHARE_DECIMALS));
@@ -130,7 +130,7 @@ impl SvgWriter<'_> {
 
     fn linear(&mut self, element: &mut Element, gradient: &GradientTrack, seen: &[bool]) {
         let ends: Vec<Vec<Point>> = gradient.placement.iter().map(|p| linear_ends(p).to_vec()).collect();
-        let ends = settled(&ends, seen);
+        let ends = self.planner.settled(&ends, seen);
         let keys = self.planner.pixels(&ends);
         let decimals = self.decimals;
         let mut set = |name, value: &dyn Fn(usize) -> f64| {
@@ -151,7 +151,7 @@ impl SvgWriter<'_> {
             .map(|p| p.along_x.norm().max(p.along_y.norm()))
             .fold(0.0, f64::max);
         let focus: Vec<Vec<Point>> = gradient.focus.iter().map(|focus| vec![focus * reach]).collect();
-        let focus = settled(&focus, seen);
+        let focus = self.planner.settled(&focus, seen);
         let focus_keys = self.planner.pixels(&focus);
         for name in ["cx", "cy"] {
             element.set(name, "0");
@@ -182,7 +182,7 @@ impl SvgWriter<'_> {
                 ]
             })
             .collect();
-        let points = settled(&points, seen);
+        let points = self.planner.settled(&points, seen);
         let keys = self.planner.pixels(&points);
         if keys.len() < 2 {
             let Placement {

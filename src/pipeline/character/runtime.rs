@@ -60,7 +60,7 @@ impl Character {
 
     fn played(&self, animation: &Animation) -> Result<RuntimeAnimation, PipelineError> {
         let weights = (0..animation.frame_count())
-            .map(|index| self.single_weights_at(&animation.at(animation.time_of_frame(index))))
+            .map(|index| self.single_weights_at(&animation.place_of_frame(index)))
             .collect::<Result<_, _>>()?;
         Ok(RuntimeAnimation {
             fps: animation.fps,

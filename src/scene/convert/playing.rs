@@ -3,7 +3,7 @@
 use toml::Spanned;
 
 use super::{Checked, Reader};
-use crate::animation::{Animation, AnimationError, Key};
+use crate::animation::{Animation, AnimationError, Hold, Key, check_spacing};
 use crate::scene::error::SceneProblem;
 use crate::scene::file::AnimationTable;
 use crate::scene::settings::ScenePose;
@@ -27,10 +27,11 @@ impl Reader<'_> {
                     let before = checked.last().map(|k| k.time);
                     let time = self.key_time(index, written.time, before, start)?;
                     let at = Spanned::new(key.span(), written.at.clone());
-                    checked.push(Key {
-                        time,
-                        at: self.place(&at, &format!("`at` of animation key {index}"), Some(dimension))?,
-                    });
+                    let place = self.place(&at, &format!("`at` of animation key {index}"), Some(dimension))?;
+                    let mut key = Key::new(time, place);
+                    key.hold = self.hold(&written.hold, || format!("`hold` of animation key {index}"))?;
+                    key.spacing = self.spacing(&written.spacing, index)?;
+                    checked.push(key);
                 }
                 Animation::new(checked, table.looped.unwrap_or(false))
             }
@@ -38,6 +39,9 @@ impl Reader<'_> {
         };
         let mut animation = self.checked(animation)?;
         animation.fps = self.frame_rate(&table.fps)?;
+        animation.hold = self
+            .hold(&table.hold, || "[animation] hold".to_owned())?
+            .unwrap_or_default();
         if let Some(size) = &table.size {
             let (start, sides) = (size.span().start, size.get_ref());
             let bad = |value: i64| {
@@ -73,6 +77,39 @@ impl Reader<'_> {
             })?;
         }
         Ok(animation)
+    }
+
+    /// For how many frames a drawing is shown, where the file says it.
+    fn hold(&self, written: &Option<Spanned<i64>>, key: impl Fn() -> String) -> Checked<Option<Hold>> {
+        let Some(written) = written else { return Ok(None) };
+        let frames = *written.get_ref();
+        Hold::of_frames(frames).map(Some).ok_or_else(|| {
+            self.fail(
+                written.span().start,
+                SceneProblem::BadNumber {
+                    key: key(),
+                    value: frames as f64,
+                    allowed: "1, 2 or 3, the frames for which a drawing is shown",
+                },
+            )
+        })
+    }
+
+    /// The spacing chart of a key.
+    fn spacing(&self, written: &Option<Spanned<Vec<Spanned<f64>>>>, index: usize) -> Checked<Vec<f64>> {
+        let Some(written) = written else { return Ok(Vec::new()) };
+        let marks: Vec<f64> = written.get_ref().iter().map(|mark| *mark.get_ref()).collect();
+        check_spacing(index, &marks).map_err(|error| {
+            let place = match error {
+                AnimationError::SpacingRange { mark, .. } | AnimationError::SpacingOrder { mark, .. } => {
+                    written.get_ref().get(mark).map(|mark| mark.span().start)
+                }
+                _ => None,
+            };
+            let start = place.unwrap_or(written.span().start);
+            self.fail(start, SceneProblem::Animation(error))
+        })?;
+        Ok(marks)
     }
 
     /// An animation whose keys were checked one by one.

@@ -28,8 +28,8 @@ impl Reader<'_> {
                         }
                         None => at.clone(),
                     };
-                    geometry.push(Key { time, at });
-                    textures.push(Key { time, at: texture_at });
+                    geometry.push(Key::new(time, at));
+                    textures.push(Key::new(time, texture_at));
                 }
                 let is_loop = table.looped.unwrap_or(false);
                 closed_alike(&mut geometry, &mut textures, is_loop);
@@ -62,7 +62,6 @@ fn closed_alike(geometry: &mut Vec<Key>, textures: &mut Vec<Key>, is_loop: bool)
     let count = geometry.len();
     let period = (geometry[count - 1].time - geometry[0].time) * count as f64 / (count - 1) as f64;
     for keys in [geometry, textures] {
-        let (time, at) = (keys[0].time + period, keys[0].at.clone());
-        keys.push(Key { time, at });
+        keys.push(Key::new(keys[0].time + period, keys[0].at.clone()));
     }
 }
