@@ -25,11 +25,11 @@ use crate::registration::template::{MOST_DIFFERENCE, Template};
 /// States that go on: so many, and more for every band of the chain, since a long one can go wrong more often; at most.
 const WIDTH: usize = 80;
 const WIDTH_A_BAND: usize = 8;
-const MOST_WIDTH: usize = 300;
+pub(super) const MOST_WIDTH: usize = 300;
 /// Directions of a first band.
-const TURNS: usize = 24;
+pub(super) const TURNS: usize = 24;
 /// Bends between bands, in degrees.
-const BENDS_DEG: [f64; 9] = [0.0, -12.0, 12.0, -25.0, 25.0, -45.0, 45.0, -70.0, 70.0];
+pub(super) const BENDS_DEG: [f64; 9] = [0.0, -12.0, 12.0, -25.0, 25.0, -45.0, 45.0, -70.0, 70.0];
 /// Shifts of a first joint: distance in spacings, how many around, and what they cost a vertex.
 const SHIFTS: [(f64, usize, f64); 4] = [(0.0, 1, 0.0), (1.0, 6, 0.01), (2.2, 8, 0.03), (4.0, 12, 0.06)];
 /// What a vertex costs where others may hide it.
@@ -42,8 +42,8 @@ const LIMB_SPACINGS: f64 = 0.4;
 /// What a vertex earns where nothing else explains the pose, if it fits.
 const EXPLAINS: f64 = 0.35;
 /// What a radian of turn costs a vertex of the first band, and a bend of 45 degrees one of a later band; bends cost as their 3/2th power.
-const TURN_COST: f64 = 0.02;
-const BEND_COST: f64 = 0.05;
+pub(super) const TURN_COST: f64 = 0.02;
+pub(super) const BEND_COST: f64 = 0.05;
 /// How broad a chain is, in median depths of a band's vertices, beside a spacing.
 const BREADTH: f64 = 1.6;
 /// What a vertex costs where its chain is already, within how many breadths, and how many bands further back that is looked for.
@@ -60,8 +60,8 @@ const HOLD: usize = 14;
 const CELL_SPACINGS: f64 = 0.7;
 const CELL_RAD: f64 = 0.25;
 /// Hypotheses differ where their last bands are this far apart, in spacings, or turned by this much against one another.
-const APART_SPACINGS: f64 = 2.2;
-const APART_RAD: f64 = 0.6;
+pub(super) const APART_SPACINGS: f64 = 2.2;
+pub(super) const APART_RAD: f64 = 0.6;
 
 /// A chain put somewhere.
 pub(super) struct Hypothesis {
@@ -71,14 +71,14 @@ pub(super) struct Hypothesis {
 
 /// A band's placement: where its joint is and how it is turned.
 #[derive(Clone, Copy)]
-struct State {
-    joint: Point,
-    turn_rad: f64,
-    cost: f64,
-    /// The state of the band before.
-    before: usize,
+pub(super) struct State {
+    pub(super) joint: Point,
+    pub(super) turn_rad: f64,
+    pub(super) cost: f64,
+    /// The state of the band that was put before it.
+    pub(super) before: usize,
     /// Whether an earlier band of the chain lies there, which may hide it.
-    is_under: bool,
+    pub(super) is_under: bool,
 }
 
 /// What hypotheses are made from.
@@ -92,10 +92,10 @@ pub(super) struct Search<'a> {
 }
 
 /// What the rest of the figure shows.
-struct Rest {
-    is_covered: Vec<bool>,
+pub(super) struct Rest {
+    pub(super) is_covered: Vec<bool>,
     /// By cell, from 0 to 1, how little it is explained.
-    unexplained: Vec<f32>,
+    pub(super) unexplained: Vec<f32>,
 }
 
 impl Search<'_> {
@@ -107,10 +107,7 @@ impl Search<'_> {
             return Vec::new();
         };
         let rest = self.rest(others);
-        let bands: Vec<Vec<usize>> = nodes
-            .iter()
-            .map(|node| spread_out(&limbs.nodes[*node], SAMPLES))
-            .collect();
+        let bands = bands_of(limbs, &nodes);
         let length = line.iter().map(|chain| limbs.vertices(*chain).count()).sum::<usize>() as f64;
         let (root, root_turn_rad) = self.hold(first, places);
         let width = (WIDTH + WIDTH_A_BAND * nodes.len()).min(MOST_WIDTH);
@@ -125,7 +122,7 @@ impl Search<'_> {
     }
 
     /// What is left to be explained.
-    fn rest(&self, others: &Layer) -> Rest {
+    pub(super) fn rest(&self, others: &Layer) -> Rest {
         let [columns, rows] = self.comparison.size;
         let bare: Vec<f32> = (others.iter().zip(&self.comparison.figure))
             .map(|(differs, in_figure)| {
@@ -145,7 +142,7 @@ impl Search<'_> {
     }
 
     /// Where the joint of a first band is, and how what it hangs on is turned there.
-    fn hold(&self, first: usize, places: &[Point]) -> (Point, f64) {
+    pub(super) fn hold(&self, first: usize, places: &[Point]) -> (Point, f64) {
         let (limbs, points) = (self.limbs, &self.comparison.lattice.points);
         let joint = limbs.joints[first];
         let mut near = limbs.nodes[limbs.parents[first]].clone();
@@ -231,7 +228,7 @@ impl Search<'_> {
     }
 
     /// Adds what the vertices of a band cost where the states put them.
-    fn price(&self, node: usize, band: &[usize], states: &mut [State], rest: &Rest) {
+    pub(super) fn price(&self, node: usize, band: &[usize], states: &mut [State], rest: &Rest) {
         let comparison = self.comparison;
         let joint = self.limbs.joints[node];
         let weight = self.limbs.nodes[node].len() as f64 / band.len().max(1) as f64;
@@ -257,7 +254,7 @@ impl Search<'_> {
     }
 
     /// The states that cost least, one of those that are nearly the same.
-    fn fittest(&self, mut states: Vec<State>, width: usize) -> Vec<State> {
+    pub(super) fn fittest(&self, mut states: Vec<State>, width: usize) -> Vec<State> {
         states.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         let side = CELL_SPACINGS * self.comparison.lattice.spacing;
         let mut taken = BTreeSet::new();
@@ -301,7 +298,7 @@ impl Search<'_> {
         found
     }
 
-    fn hypothesis(&self, nodes: &[usize], trail: &[Vec<State>], tip: &State) -> Hypothesis {
+    pub(super) fn hypothesis(&self, nodes: &[usize], trail: &[Vec<State>], tip: &State) -> Hypothesis {
         let (limbs, points) = (self.limbs, &self.comparison.lattice.points);
         let mut places = Vec::new();
         let mut state = *tip;
@@ -328,6 +325,12 @@ fn nearest_before(trail: &[Vec<State>], number: usize, place: Point) -> f64 {
         at = state.before;
     }
     nearest
+}
+
+/// The vertices of bands that are compared.
+pub(super) fn bands_of(limbs: &Articulation, nodes: &[usize]) -> Vec<Vec<usize>> {
+    let samples = |node: &usize| spread_out(&limbs.nodes[*node], SAMPLES);
+    nodes.iter().map(samples).collect()
 }
 
 /// At most `most` of some vertices, evenly among them.

@@ -4,7 +4,7 @@
 //!
 //! 1. The limbs of the open figure (`articulation`).
 //! 2. What the figure explains of the pose wherever it is put (`comparison`).
-//! 3. Hypotheses for every limb (`hypotheses`), a beginning that is grown from them where outlines say nothing (`growth`), and the search among them
+//! 3. Hypotheses for every limb (`hypotheses`, `from_tip`), a beginning that is grown from them where outlines say nothing (`growth`), and the search among them
 //!    (`search`).
 //! 4. Which part lies in front (`order`); what is hidden is then no longer compared, and the whole is registered once more.
 //!
@@ -16,6 +16,7 @@
 mod articulation;
 mod chain;
 mod comparison;
+mod from_tip;
 mod growth;
 mod hypotheses;
 mod order;

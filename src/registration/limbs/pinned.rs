@@ -52,6 +52,11 @@ impl Pinned {
         pinned
     }
 
+    /// Whether there is a pin in a band.
+    pub(super) fn is_on(&self, node: usize) -> bool {
+        !self.of_node[node].is_empty()
+    }
+
     /// What a band costs a vertex whose pins are put by `place`, which has where a place of the reference goes; `points` are the reference's vertices.
     pub(super) fn of_band(&self, node: usize, points: &[Point], place: impl Fn(Point) -> Point) -> f64 {
         let pins = self.of_node[node].iter().map(|pin| &self.pins[*pin]);

@@ -178,7 +178,11 @@ impl Finder<'_> {
         below.retain(|other| !line.contains(other));
         let leaves = |other: usize| !line.contains(&other) && !below.contains(&other) && !gone.contains(&other);
         let others = self.comparison.least(&now.layers, leaves);
-        let hypotheses = self.search.of_line(&line, &now.places, &others, most);
+        let mut hypotheses = self.search.of_line(&line, &now.places, &others, most);
+        let mut nodes = line.iter().flat_map(|chain| &self.limbs.chains[*chain].nodes);
+        if nodes.any(|node| self.search.pinned.is_on(*node)) {
+            hypotheses.extend(self.search.of_line_from_tip(&line, &now.places, &others, most));
+        }
         (hypotheses.into_par_iter())
             .map(|hypothesis| {
                 let (mut places, mut layers) = (now.places.clone(), now.layers.clone());
