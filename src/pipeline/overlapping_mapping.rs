@@ -42,6 +42,9 @@ const HANDLES_APART: f64 = 0.05;
 const FURTHER: f64 = 1.6;
 const TRIES: usize = 6;
 
+/// A mapping, what is known of it, and the outlines' part of it.
+pub(super) type Mapped = (Mapping, MappingReport, Arc<Boundaries>);
+
 /// Poses in which what was found is not enough for a mesh.
 pub(super) struct Unfit(pub(super) Vec<usize>);
 
@@ -53,7 +56,7 @@ pub(super) fn map_overlapping(
     overlapping: &Overlapping,
     mut notes: Vec<Note>,
     begins: &mut dyn FnMut(Stage),
-) -> Result<Result<(Mapping, MappingReport, Arc<Boundaries>), Unfit>, PipelineError> {
+) -> Result<Result<Mapped, Unfit>, PipelineError> {
     let names = layer.names();
     let kept = overlapping.open();
     // What is marked in the other poses alone has no place here.
