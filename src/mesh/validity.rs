@@ -130,10 +130,9 @@ pub fn check_immersion(topology: &Topology, positions: &[Point], rings: &[Vec<us
 pub(crate) fn first_winding(topology: &Topology, positions: &[Point]) -> Option<(usize, usize)> {
     let mut angles_rad = vec![0.0; positions.len()];
     for &vertices in topology.triangles() {
-        for k in 0..3 {
-            let [a, b, c] = [0, 1, 2].map(|corner| positions[vertices[(k + corner) % 3]]);
-            let (u, v) = (b - a, c - a);
-            angles_rad[vertices[k]] += u.perp(&v).atan2(u.dot(&v));
+        let of_corners = geometry::angles_rad(geometry::corners(positions, vertices));
+        for (v, angle_rad) in vertices.into_iter().zip(of_corners) {
+            angles_rad[v] += angle_rad;
         }
     }
     let mut is_inner = vec![true; positions.len()];

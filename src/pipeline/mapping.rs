@@ -91,7 +91,9 @@ pub(super) fn map_drawn(
         notes.extend(note_on_units(&names, drawings));
     }
     check_hole_counts(&names, drawings)?;
-    let mut found = overlapping::found(layer, drawings)?;
+    // Where parts lie over one another, landmarks may lie as they must not elsewhere: they are refused when that is known.
+    let landmarks = landmarks::sorted(layer, drawings);
+    let mut found = overlapping::found(layer, drawings, landmarks.as_ref().ok())?;
     while let Some(overlapping) = found {
         match map_overlapping(layer, drawings, &overlapping, notes.clone(), begins)? {
             // A mesh that goes around one of its holes otherwise than in the other poses cannot be blended.
@@ -101,7 +103,7 @@ pub(super) fn map_drawn(
             Err(Unfit(poses)) => found = overlapping.without(&poses),
         }
     }
-    let landmarks = landmarks::sorted(layer, drawings)?;
+    let landmarks = landmarks?;
     let known = Known::of(&landmarks);
     let boundaries = match before.filter(|before| before.serve(layer, &known)) {
         Some(same) => Arc::clone(same),

@@ -49,8 +49,13 @@ pub(super) struct Overlapping {
     pub(super) poses: Vec<Option<Overlap>>,
 }
 
-/// What of a layer's drawings lies over itself; `None` if nothing does.
-pub(super) fn found(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Option<Overlapping>, PipelineError> {
+/// What of a layer's drawings lies over itself; `None` if nothing does. `landmarks` are the layer's, if they can be sorted as those of drawings whose parts
+/// are apart.
+pub(super) fn found(
+    layer: &LayerSpec,
+    drawings: &[Arc<Drawing>],
+    landmarks: Option<&Landmarks>,
+) -> Result<Option<Overlapping>, PipelineError> {
     if layer.overlaps == OverlapSearch::Refuse || drawings.len() < 2 {
         return Ok(None);
     }
@@ -63,7 +68,7 @@ pub(super) fn found(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Opti
         return Ok(None);
     };
     let is_shorter = |pose: usize| (MUCH_SHORTER..SHORTER).contains(&(lengths[pose] / lengths[template]));
-    let otherwise = marked_otherwise(layer, drawings, template);
+    let otherwise = marked_otherwise(layer, drawings, landmarks, template);
     let shorter: Vec<usize> = (0..lengths.len())
         .filter(|pose| is_shorter(*pose) || otherwise.contains(pose))
         .collect();
@@ -134,14 +139,19 @@ pub(super) fn found(layer: &LayerSpec, drawings: &[Arc<Drawing>]) -> Result<Opti
 
 /// The poses whose landmarks lie as they cannot where parts are apart: in another order along the outline than in the template, or inside where they lie on
 /// it there. An order that is reversed is that of a drawing that faces the other way.
-fn marked_otherwise(layer: &LayerSpec, drawings: &[Arc<Drawing>], template: usize) -> Vec<usize> {
+fn marked_otherwise(
+    layer: &LayerSpec,
+    drawings: &[Arc<Drawing>],
+    landmarks: Option<&Landmarks>,
+    template: usize,
+) -> Vec<usize> {
     let others = (0..drawings.len()).filter(|pose| *pose != template);
     if layer.landmarks.is_empty() {
         return Vec::new();
     }
-    match landmarks::sorted(layer, drawings) {
-        Ok(landmarks) => others.filter(|pose| is_shuffled(&landmarks, template, *pose)).collect(),
-        Err(_) => others
+    match landmarks {
+        Some(landmarks) => others.filter(|pose| is_shuffled(landmarks, template, *pose)).collect(),
+        None => others
             .filter(|&pose| {
                 let both = landmarks::sorted(&layer.marked_only_in(&[template, pose]), drawings);
                 both.map_or(true, |landmarks| is_shuffled(&landmarks, template, pose))
@@ -161,7 +171,7 @@ fn is_shuffled(landmarks: &Landmarks, template: usize, pose: usize) -> bool {
     back > 1 && along.len() > back + 1
 }
 
-/// By drawn pose, the places of landmarks and of the points of lines in the template and in it, as drawings are used; none of poses that are not among `poses`.
+/// By drawn pose, the places of landmarks and of the ends of lines in the template and in it, as drawings are used; none of poses that are not among `poses`.
 fn marked_pairs(layer: &LayerSpec, template: usize, poses: &[usize]) -> Vec<Vec<[Point; 2]>> {
     let used = |pose: usize, place: Point| landmarks::as_used(layer, pose, place);
     let mut pairs = vec![Vec::new(); layer.drawn_poses().len()];

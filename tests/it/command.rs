@@ -12,10 +12,6 @@ fn two() -> Workshop {
     workshop
 }
 
-fn bytes(workshop: &Workshop, name: &str) -> Vec<u8> {
-    std::fs::read(workshop.path(name)).expect(name)
-}
-
 #[test]
 fn any_frames_on_any_threads_are_the_same_bytes() {
     let workshop = two();
@@ -40,8 +36,8 @@ fn any_frames_on_any_threads_are_the_same_bytes() {
     assert_eq!(names, expected);
     for name in &names {
         assert_eq!(
-            bytes(&workshop, &format!("part/{name}")),
-            bytes(&workshop, &format!("whole/{name}"))
+            workshop.bytes(&format!("part/{name}")),
+            workshop.bytes(&format!("whole/{name}"))
         );
     }
     assert_eq!(std::fs::read_dir(workshop.path("whole")).expect("a folder").count(), 12);
@@ -54,14 +50,14 @@ fn animations_are_the_same_for_any_threads() {
         let [one, many] = ["1", "4"].map(|threads| {
             let name = format!("{threads}.{kind}");
             workshop.succeeds(&["render", "scene.toml", "-o", &name, "--threads", threads]);
-            bytes(&workshop, &name)
+            workshop.bytes(&name)
         });
         assert!(one == many, "{kind}");
         assert!(!one.is_empty());
     }
     // A kind that the name does not say.
     workshop.succeeds(&["render", "scene.toml", "-o", "other", "--format", "gif"]);
-    assert!(bytes(&workshop, "other") == bytes(&workshop, "1.gif"));
+    assert!(workshop.bytes("other") == workshop.bytes("1.gif"));
 }
 
 #[test]
@@ -92,10 +88,7 @@ fn one_pose_is_returned_everywhere() {
     workshop.succeeds(&["frame", "scene.toml", "--at", "0,0", "-o", "a.png"]);
     workshop.succeeds(&["frame", "scene.toml", "--at=-3,17", "-o", "b.png"]);
     workshop.succeeds(&["frame", "scene.toml", "--weights", "1", "-o", "c.png"]);
-    assert!(
-        bytes(&workshop, "a.png") == bytes(&workshop, "b.png")
-            && bytes(&workshop, "a.png") == bytes(&workshop, "c.png")
-    );
+    assert!(workshop.bytes("a.png") == workshop.bytes("b.png") && workshop.bytes("a.png") == workshop.bytes("c.png"));
     workshop.succeeds(&["map", "scene.toml", "-o", "m.json"]);
     workshop.succeeds(&["check", "m.json"]);
 }
@@ -106,7 +99,7 @@ fn a_mapping_blends_to_its_poses() {
     workshop.succeeds(&["map", "scene.toml", "-o", "m.json"]);
     let line = workshop.succeeds(&["check", "m.json"]);
     assert!(line.contains("valid: 2 poses"), "{line}");
-    let mapping: serde_json::Value = serde_json::from_slice(&bytes(&workshop, "m.json")).expect("JSON");
+    let mapping: serde_json::Value = serde_json::from_slice(&workshop.bytes("m.json")).expect("JSON");
     assert!(mapping["matching"]["samples"].as_array().expect("rows").len() >= 256);
     for reference in ["canonical", "tall"] {
         let text = workshop.succeeds(&[
@@ -301,7 +294,7 @@ fn a_sprite_sheet_is_two_files_or_none() {
     std::fs::remove_dir(workshop.path("a.json")).expect("removed");
     assert_eq!(workshop.listing(), before);
     workshop.succeeds(&["render", "scene.toml", "-o", "a.png", "--format", "sprites"]);
-    let table: serde_json::Value = serde_json::from_slice(&bytes(&workshop, "a.json")).expect("JSON");
+    let table: serde_json::Value = serde_json::from_slice(&workshop.bytes("a.json")).expect("JSON");
     assert_eq!(table["frames"].as_array().expect("an array").len(), 12);
     assert_eq!(table["meta"]["image"], "a.png");
     assert!(workshop.path("a.png").is_file());

@@ -114,10 +114,6 @@ fn text(workshop: &Workshop, name: &str) -> String {
     std::fs::read_to_string(workshop.path(name)).expect(name)
 }
 
-fn bytes(workshop: &Workshop, name: &str) -> Vec<u8> {
-    std::fs::read(workshop.path(name)).expect(name)
-}
-
 fn form_at(workshop: &Workshop, [bend, size]: [f64; 2]) -> String {
     let at = format!("{bend},{size}");
     workshop.succeeds(&["shape", "render", "scene.toml", "--at", &at, "-o", "form.obj"]);
@@ -290,8 +286,8 @@ fn any_frames_on_any_threads_are_the_same_bytes() {
     assert_eq!(names.len(), 2);
     for name in names {
         assert_eq!(
-            bytes(&workshop, &format!("part/{name}")),
-            bytes(&workshop, &format!("whole/{name}"))
+            workshop.bytes(&format!("part/{name}")),
+            workshop.bytes(&format!("whole/{name}"))
         );
     }
     assert_eq!(std::fs::read_dir(workshop.path("whole")).expect("a folder").count(), 17);
@@ -299,7 +295,7 @@ fn any_frames_on_any_threads_are_the_same_bytes() {
         let [one, many] = ["1", "4"].map(|threads| {
             let name = format!("{threads}.{kind}");
             render(&name, &["--threads", threads]);
-            bytes(&workshop, &name)
+            workshop.bytes(&name)
         });
         assert!(one == many, "{kind}");
     }

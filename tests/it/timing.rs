@@ -14,10 +14,6 @@ fn scene(animation: &str) -> Workshop {
     workshop
 }
 
-fn bytes(workshop: &Workshop, name: &str) -> Vec<u8> {
-    std::fs::read(workshop.path(name)).expect(name)
-}
-
 /// The files of a folder in order.
 fn files(workshop: &Workshop, folder: &str) -> Vec<Vec<u8>> {
     let entries = std::fs::read_dir(workshop.path(folder)).expect("a folder");
@@ -84,7 +80,7 @@ fn a_held_drawing_is_one_picture_with_a_longer_delay() {
         let name = format!("out.{kind}");
         let [held, ones] = [&held, &ones].map(|workshop| {
             workshop.succeeds(&["render", "scene.toml", "-o", &name]);
-            bytes(workshop, &name)
+            workshop.bytes(&name)
         });
         assert!(held.len() < ones.len(), "{kind}: {} of {}", held.len(), ones.len());
         let shown = match kind {
@@ -123,7 +119,7 @@ fn without_a_hold_nothing_changes() {
     for name in ["out.gif", "out.json"] {
         let [plain, ones] = [&plain, &ones].map(|workshop| {
             workshop.succeeds(&["render", "scene.toml", "-o", name]);
-            bytes(workshop, name)
+            workshop.bytes(name)
         });
         assert!(plain == ones, "{name}");
     }
@@ -160,7 +156,7 @@ fn frames_before_a_key_lie_where_its_chart_says() {
         let workshop = Workshop::new();
         workshop.two_poses("[0, 0]", "[1, 0]", &format!("[animation]\n{}", keys(spacing)));
         workshop.succeeds(&["render", "scene.toml", "-o", "out.gif", "--certify"]);
-        let lines = String::from_utf8(bytes(&workshop, "out.gif.certificates.jsonl")).expect("text");
+        let lines = String::from_utf8(workshop.bytes("out.gif.certificates.jsonl")).expect("text");
         let place = |line: &str| serde_json::from_str::<serde_json::Value>(line).expect("JSON")["at"][0].as_f64();
         lines.lines().filter_map(place).collect::<Vec<f64>>()
     };

@@ -27,6 +27,10 @@ impl Workshop {
         std::fs::write(self.path(name), bytes).expect("written");
     }
 
+    pub(crate) fn bytes(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).expect(name)
+    }
+
     /// A scene file: the version, then `text` from line 2.
     pub(crate) fn scene(&self, text: &str) {
         self.file("scene.toml", format!("version = 1\n{text}").as_bytes());

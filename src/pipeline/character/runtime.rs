@@ -54,8 +54,11 @@ impl Character {
     }
 
     fn single_weights_at(&self, place: &[f64]) -> Result<Vec<f32>, PipelineError> {
-        let weights = self.weights.weights_at(place).map_err(PipelineError::Weights)?;
-        Ok(weights.into_iter().map(|weight| weight as f32).collect())
+        Ok(self
+            .weights_at(place)?
+            .into_iter()
+            .map(|weight| weight as f32)
+            .collect())
     }
 
     fn played(&self, animation: &Animation) -> Result<RuntimeAnimation, PipelineError> {

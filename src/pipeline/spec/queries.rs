@@ -123,8 +123,7 @@ impl LayerSpec {
     #[must_use]
     pub(in crate::pipeline) fn marked_only_in(&self, kept: &[usize]) -> Self {
         let mut layer = self.clone();
-        let is_kept: Vec<bool> = (0..self.poses.len()).map(|pose| kept.contains(&pose)).collect();
-        for (pose, _) in is_kept.iter().enumerate().filter(|(_, is_kept)| !**is_kept) {
+        for pose in (0..self.poses.len()).filter(|pose| !kept.contains(pose)) {
             for landmark in &mut layer.landmarks {
                 landmark.at[pose] = None;
             }

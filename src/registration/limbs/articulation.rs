@@ -122,6 +122,17 @@ impl Articulation {
         line
     }
 
+    /// The bands of chains, in order.
+    pub(super) fn bands(&self, chains: &[usize]) -> Vec<usize> {
+        let bands = chains.iter().flat_map(|chain| &self.chains[*chain].nodes);
+        bands.copied().collect()
+    }
+
+    /// How many vertices some bands have.
+    pub(super) fn count(&self, bands: &[usize]) -> usize {
+        bands.iter().map(|band| self.nodes[*band].len()).sum()
+    }
+
     /// The lines of chains that nothing else hangs on.
     pub(super) fn ends(&self) -> Vec<Vec<usize>> {
         (1..self.chains.len())

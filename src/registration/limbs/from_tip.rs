@@ -7,12 +7,12 @@
 //! length: the joint may be hidden, too. That is tried where an artist has marked something of the chain. Elsewhere it found as many wrong hands as right
 //! ones.
 
-use std::f64::consts::{FRAC_PI_4, TAU};
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 
-use super::comparison::{Layer, middle};
+use super::comparison::middle;
 use super::hypotheses::{
-    APART_RAD, APART_SPACINGS, BEND_COST, BENDS_DEG, Hypothesis, MOST_WIDTH, Rest, Search, State, TURN_COST, TURNS,
-    bands_of,
+    BENDS_DEG, Hypothesis, MOST_WIDTH, Rest, Search, State, TURN_COST, TURNS, bands_of, bend_cost,
 };
 use crate::math::{Point, angle, rotation};
 
@@ -23,28 +23,18 @@ const GAP_COST: f64 = 0.015;
 const MOST_GAP: f64 = 12.0;
 
 impl Search<'_> {
-    /// At most `most` hypotheses of chains that continue one another and hang on others at `places`; `others` is what these show. None where these explain everything.
-    pub(super) fn of_line_from_tip(
-        &self,
-        line: &[usize],
-        places: &[Point],
-        others: &Layer,
-        most: usize,
-    ) -> Vec<Hypothesis> {
+    /// At most `most` hypotheses of bands that continue one another and hang on others at `places`; `rest` is what these show. None where these explain everything.
+    pub(super) fn put_from_tip(&self, nodes: &[usize], places: &[Point], rest: &Rest, most: usize) -> Vec<Hypothesis> {
         let limbs = self.limbs;
-        // From the tip on.
-        let nodes: Vec<usize> = (line.iter().flat_map(|chain| &limbs.chains[*chain].nodes).copied())
-            .rev()
-            .collect();
+        let nodes: Vec<usize> = nodes.iter().rev().copied().collect();
         let (Some(&tip), Some(&first)) = (nodes.first(), nodes.last()) else {
             return Vec::new();
         };
-        let rest = self.rest(others);
         let bands = bands_of(limbs, &nodes);
-        let length = line.iter().map(|chain| limbs.vertices(*chain).count()).sum::<usize>() as f64;
-        let mut trail = vec![self.tips(tip, &bands[0], &rest)];
+        let length = limbs.count(&nodes) as f64;
+        let mut trail = vec![self.tips(tip, &bands[0], rest)];
         for (k, &node) in nodes.iter().enumerate().skip(1) {
-            let states = self.preceding(&trail[k - 1], nodes[k - 1], (node, &bands[k]), &rest);
+            let states = self.preceding(&trail[k - 1], nodes[k - 1], (node, &bands[k]), rest);
             trail.push(states);
         }
         let (root, root_turn_rad) = self.hold(first, places);
@@ -57,27 +47,9 @@ impl Search<'_> {
             state.cost += GAP_COST * length * gap + TURN_COST * weight * turned_rad;
         }
         ends.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        let mut tips: Vec<State> = Vec::new();
-        let mut found = Vec::new();
-        for end in ends {
-            let mut state = end;
-            for states in trail[..trail.len() - 1].iter().rev() {
-                state = states[state.before];
-            }
-            let is_known = tips.iter().any(|other| {
-                (other.joint - state.joint).norm() < APART_SPACINGS * spacing
-                    && angle::wrap(other.turn_rad - state.turn_rad).abs() < APART_RAD
-            });
-            if is_known {
-                continue;
-            }
-            tips.push(state);
-            found.push(self.hypothesis(&nodes, &trail, &end));
-            if found.len() == most {
-                break;
-            }
-        }
-        found
+        let put_before = trail.split_last().map(|(_, before)| before).unwrap_or_default();
+        let tip_of = |end: &State| put_before.iter().rev().fold(*end, |state, states| states[state.before]);
+        self.distinct(&nodes, &trail, &ends, tip_of, most)
     }
 
     /// The last band wherever the rest of the figure explains nothing.
@@ -86,12 +58,11 @@ impl Search<'_> {
         let vertices = &limbs.nodes[node];
         let from = vertices.iter().map(|v| comparison.lattice.points[*v]).sum::<Point>() / vertices.len().max(1) as f64
             - limbs.joints[node];
-        let columns = comparison.size[0];
-        let mut taken = std::collections::BTreeSet::new();
+        let (columns, side) = (comparison.size[0], comparison.lattice.spacing);
+        let mut taken = BTreeSet::new();
         let mut states = Vec::new();
         for cell in 0..rest.unexplained.len() {
             let place = middle(cell, columns);
-            let side = comparison.lattice.spacing;
             // One a spacing; casts saturate.
             let square = ((place.x / side) as usize, (place.y / side) as usize);
             if !comparison.figure[cell] || rest.unexplained[cell] <= UNEXPLAINED || !taken.insert(square) {
@@ -121,12 +92,11 @@ impl Search<'_> {
         for (number, state) in last.iter().enumerate() {
             for bend_deg in BENDS_DEG {
                 let bend_rad: f64 = bend_deg.to_radians();
-                let bent = bend_rad.abs() / FRAC_PI_4;
                 let turn_rad = state.turn_rad - bend_rad;
                 states.push(State {
                     joint: state.joint - rotation(turn_rad) * step,
                     turn_rad,
-                    cost: state.cost + BEND_COST * weight * bent * bent.sqrt(),
+                    cost: state.cost + bend_cost(bend_rad, weight),
                     before: number,
                     is_under: false,
                 });

@@ -1,6 +1,6 @@
 //! A beginning for outlines that say nothing: the figure grown from its root.
 //!
-//! Finders at several sizes -> the whole figure put, and the finder of its size.
+//! Finders at several sizes -> the whole figure put, and which of them has its size.
 //!
 //! 1. The root's band goes wherever its patches fit best, at any turn and at any of the sizes: how large a figure is that lies over itself, neither its
 //!    area nor its outline says.
@@ -11,7 +11,7 @@
 use rayon::prelude::*;
 
 use super::comparison::BARE;
-use super::hypotheses::{Hypothesis, spread_out};
+use super::hypotheses::spread_out;
 use super::search::{Finder, Put};
 use crate::math::{Point, angle, rotation};
 use crate::registration::register::RegistrationError;
@@ -32,45 +32,30 @@ struct Root {
     cost: f64,
     place: Point,
     turn_rad: f64,
-    /// Which of the sizes it has.
-    finder: usize,
 }
 
-/// The figure grown from its root, the best of some, by one of the `finders`, which differ in the size of the figure.
-pub(super) fn grown<'a>(mut finders: Vec<Finder<'a>>) -> Result<Option<(Finder<'a>, Put)>, RegistrationError> {
+/// The figure grown from its root, the best of some, and the number of the one of `finders` that it was grown by: they differ in the size of the figure.
+pub(super) fn grown(finders: &[Finder<'_>]) -> Result<Option<(usize, Put)>, RegistrationError> {
     let spacing = finders.first().map_or(0.0, |finder| finder.pair.lattice.spacing);
-    let tried: Vec<Root> = (finders.iter().enumerate())
-        .flat_map(|(number, finder)| finder.roots(number))
-        .collect();
-    let all: Vec<usize> = (0..finders.len()).collect();
-    let places = likeliest(tried.clone(), spacing, &all);
-    let roots: Vec<Root> = (all.iter())
-        .flat_map(|finder| {
-            let near = tried
-                .iter()
-                .filter(|root| places.iter().any(|place| is_near(place, root, spacing)));
-            likeliest(near.copied().collect(), spacing, &[*finder])
+    let tried: Vec<Vec<Root>> = finders.iter().map(Finder::roots).collect();
+    let places = likeliest(tried.iter().flatten(), spacing);
+    let is_likely = |root: &&Root| places.iter().any(|place| is_near(place, root, spacing));
+    let roots: Vec<(usize, Root)> = (tried.iter().enumerate())
+        .flat_map(|(finder, tried)| {
+            let near = likeliest(tried.iter().filter(is_likely), spacing);
+            near.into_iter().map(move |root| (finder, root))
         })
         .collect();
     let mut grown: Vec<(usize, Put)> = (roots.into_par_iter())
-        .map(|root| {
-            let finder = &finders[root.finder];
-            (root.finder, finder.grown_from(finder.at_root(root)))
-        })
+        .map(|(finder, root)| (finder, finders[finder].grown_from(root)))
         .collect();
     grown.sort_by(|a, b| a.1.energy.total_cmp(&b.1.energy));
     grown.truncate(REGISTERED);
     let registered: Vec<Result<(usize, Put), RegistrationError>> = (grown.into_par_iter())
         .map(|(finder, put)| Ok((finder, finders[finder].registered_whole(&put)?)))
         .collect();
-    let mut best: Option<(usize, Put)> = None;
-    for put in registered {
-        let put = put?;
-        if best.as_ref().is_none_or(|best| put.1.energy < best.1.energy) {
-            best = Some(put);
-        }
-    }
-    Ok(best.map(|(finder, put)| (finders.swap_remove(finder), put)))
+    let registered: Vec<(usize, Put)> = registered.into_iter().collect::<Result<_, _>>()?;
+    Ok((registered.into_iter()).min_by(|a, b| a.1.energy.total_cmp(&b.1.energy)))
 }
 
 /// Whether two roots are nearly the same.
@@ -78,14 +63,14 @@ fn is_near(a: &Root, b: &Root, spacing: f64) -> bool {
     (a.place - b.place).norm() < APART.0 * spacing && angle::wrap(a.turn_rad - b.turn_rad).abs() < APART.1
 }
 
-/// The roots of some finders that cost least, one of those that are nearly the same.
-fn likeliest(mut tried: Vec<Root>, spacing: f64, finders: &[usize]) -> Vec<Root> {
-    tried.retain(|root| finders.contains(&root.finder));
+/// The roots that cost least, one of those that are nearly the same.
+fn likeliest<'a>(tried: impl Iterator<Item = &'a Root>, spacing: f64) -> Vec<Root> {
+    let mut tried: Vec<&Root> = tried.collect();
     tried.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let mut roots: Vec<Root> = Vec::new();
     for root in tried {
-        if !roots.iter().any(|other| is_near(other, &root, spacing)) {
-            roots.push(root);
+        if !roots.iter().any(|other| is_near(other, root, spacing)) {
+            roots.push(*root);
             if roots.len() == ROOTS {
                 break;
             }
@@ -102,7 +87,7 @@ impl Finder<'_> {
     }
 
     /// All places of the root's band.
-    fn roots(&self, finder: usize) -> Vec<Root> {
+    fn roots(&self) -> Vec<Root> {
         let points = &self.pair.lattice.points;
         let middle = self.middle();
         let samples = spread_out(&self.limbs.nodes[0], SAMPLES);
@@ -128,27 +113,19 @@ impl Finder<'_> {
                         cost: differs + TURN_COST * turn_rad.abs() + pinned,
                         place,
                         turn_rad,
-                        finder,
                     }
                 })
             })
             .collect()
     }
 
-    fn at_root(&self, root: Root) -> Hypothesis {
+    /// Puts the root's band, and everything that hangs on it.
+    fn grown_from(&self, root: Root) -> Put {
         let (points, middle) = (&self.pair.lattice.points, self.middle());
         let frame = rotation(root.turn_rad) * self.search.scale;
-        let place = |v: &usize| (*v, root.place + frame * (points[*v] - middle));
-        Hypothesis {
-            places: self.limbs.nodes[0].iter().map(place).collect(),
-        }
-    }
-
-    /// Puts everything that hangs on a root.
-    fn grown_from(&self, root: Hypothesis) -> Put {
-        let mut places = vec![Point::zeros(); self.limbs.node_of.len()];
-        for (v, place) in root.places {
-            places[v] = place;
+        let mut places = vec![Point::zeros(); points.len()];
+        for &v in &self.limbs.nodes[0] {
+            places[v] = root.place + frame * (points[v] - middle);
         }
         let mut layers = vec![vec![BARE; self.comparison.figure.len()]; self.limbs.chains.len()];
         layers[0] = self.comparison.layer(0, &places);

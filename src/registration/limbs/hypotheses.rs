@@ -43,7 +43,7 @@ const LIMB_SPACINGS: f64 = 0.4;
 const EXPLAINS: f64 = 0.35;
 /// What a radian of turn costs a vertex of the first band, and a bend of 45 degrees one of a later band; bends cost as their 3/2th power.
 pub(super) const TURN_COST: f64 = 0.02;
-pub(super) const BEND_COST: f64 = 0.05;
+const BEND_COST: f64 = 0.05;
 /// How broad a chain is, in median depths of a band's vertices, beside a spacing.
 const BREADTH: f64 = 1.6;
 /// What a vertex costs where its chain is already, within how many breadths, and how many bands further back that is looked for.
@@ -60,8 +60,8 @@ const HOLD: usize = 14;
 const CELL_SPACINGS: f64 = 0.7;
 const CELL_RAD: f64 = 0.25;
 /// Hypotheses differ where their last bands are this far apart, in spacings, or turned by this much against one another.
-pub(super) const APART_SPACINGS: f64 = 2.2;
-pub(super) const APART_RAD: f64 = 0.6;
+const APART_SPACINGS: f64 = 2.2;
+const APART_RAD: f64 = 0.6;
 
 /// A chain put somewhere.
 pub(super) struct Hypothesis {
@@ -99,26 +99,31 @@ pub(super) struct Rest {
 }
 
 impl Search<'_> {
-    /// At most `most` hypotheses of chains that continue one another and hang on others at `places`; `others` is what these show.
-    pub(super) fn of_line(&self, line: &[usize], places: &[Point], others: &Layer, most: usize) -> Vec<Hypothesis> {
+    /// At most `most` hypotheses of bands that continue one another and hang on others at `places`; `rest` is what these show.
+    pub(super) fn put_from_joint(
+        &self,
+        nodes: &[usize],
+        places: &[Point],
+        rest: &Rest,
+        most: usize,
+    ) -> Vec<Hypothesis> {
         let limbs = self.limbs;
-        let nodes: Vec<usize> = (line.iter().flat_map(|chain| &limbs.chains[*chain].nodes).copied()).collect();
         let Some((&first, rest_of_nodes)) = nodes.split_first() else {
             return Vec::new();
         };
-        let rest = self.rest(others);
-        let bands = bands_of(limbs, &nodes);
-        let length = line.iter().map(|chain| limbs.vertices(*chain).count()).sum::<usize>() as f64;
+        let bands = bands_of(limbs, nodes);
+        let length = limbs.count(nodes) as f64;
         let (root, root_turn_rad) = self.hold(first, places);
         let width = (WIDTH + WIDTH_A_BAND * nodes.len()).min(MOST_WIDTH);
         let mut trail: Vec<Vec<State>> =
-            vec![self.first_states(first, &bands[0], (root, root_turn_rad), length, &rest, width)];
+            vec![self.first_states(first, &bands[0], (root, root_turn_rad), length, rest, width)];
         for (k, &node) in rest_of_nodes.iter().enumerate() {
             let before = nodes[k];
-            let states = self.continued(&trail, before, (node, &bands[k + 1]), &rest, width);
+            let states = self.continued(&trail, before, (node, &bands[k + 1]), rest, width);
             trail.push(states);
         }
-        self.distinct(&nodes, &trail, most)
+        let ends = trail.last().map(Vec::as_slice).unwrap_or_default();
+        self.distinct(nodes, &trail, ends, |end| *end, most)
     }
 
     /// What is left to be explained.
@@ -212,12 +217,10 @@ impl Search<'_> {
             let again = AGAIN * weight * (AGAIN_REACH - nearest / breadth).clamp(0.0, 1.0);
             for bend_deg in BENDS_DEG {
                 let bend_rad = bend_deg.to_radians();
-                let bent = bend_rad.abs() / FRAC_PI_4;
-                let bent = bent * bent.sqrt();
                 states.push(State {
                     joint,
                     turn_rad: state.turn_rad + bend_rad,
-                    cost: state.cost + BEND_COST * weight * bent + again,
+                    cost: state.cost + bend_cost(bend_rad, weight) + again,
                     before: number,
                     is_under: nearest < UNDER * breadth,
                 });
@@ -277,20 +280,28 @@ impl Search<'_> {
         fittest
     }
 
-    /// The first of the last band's states that differ from one another, with all bands.
-    fn distinct(&self, nodes: &[usize], trail: &[Vec<State>], most: usize) -> Vec<Hypothesis> {
+    /// The first of `ends`, states of the band that was put last, whose tips differ from one another, with all bands; `tip_of` has the tip that belongs to an end.
+    pub(super) fn distinct(
+        &self,
+        nodes: &[usize],
+        trail: &[Vec<State>],
+        ends: &[State],
+        tip_of: impl Fn(&State) -> State,
+        most: usize,
+    ) -> Vec<Hypothesis> {
         let apart = APART_SPACINGS * self.comparison.lattice.spacing;
         let mut tips: Vec<State> = Vec::new();
         let mut found = Vec::new();
-        for state in trail.last().into_iter().flatten() {
-            let is_known = tips.iter().any(|tip| {
-                (tip.joint - state.joint).norm() < apart && angle::wrap(tip.turn_rad - state.turn_rad).abs() < APART_RAD
+        for end in ends {
+            let tip = tip_of(end);
+            let is_known = tips.iter().any(|other| {
+                (other.joint - tip.joint).norm() < apart && angle::wrap(other.turn_rad - tip.turn_rad).abs() < APART_RAD
             });
             if is_known {
                 continue;
             }
-            tips.push(*state);
-            found.push(self.hypothesis(nodes, trail, state));
+            tips.push(tip);
+            found.push(self.hypothesis(nodes, trail, end));
             if found.len() == most {
                 break;
             }
@@ -298,10 +309,11 @@ impl Search<'_> {
         found
     }
 
-    pub(super) fn hypothesis(&self, nodes: &[usize], trail: &[Vec<State>], tip: &State) -> Hypothesis {
+    /// The bands `nodes`, in the order that they were put in, of which the last one's state is `end`.
+    fn hypothesis(&self, nodes: &[usize], trail: &[Vec<State>], end: &State) -> Hypothesis {
         let (limbs, points) = (self.limbs, &self.comparison.lattice.points);
         let mut places = Vec::new();
-        let mut state = *tip;
+        let mut state = *end;
         for (k, &node) in nodes.iter().enumerate().rev() {
             let frame = rotation(state.turn_rad) * self.scale;
             let place = |v: &usize| (*v, state.joint + frame * (points[*v] - limbs.joints[node]));
@@ -312,6 +324,12 @@ impl Search<'_> {
         }
         Hypothesis { places }
     }
+}
+
+/// What a bend costs a band of so many vertices.
+pub(super) fn bend_cost(bend_rad: f64, vertices: f64) -> f64 {
+    let bent = bend_rad.abs() / FRAC_PI_4;
+    BEND_COST * vertices * (bent * bent.sqrt())
 }
 
 /// How near the joints of earlier bands come to a place, but for those of the last few.

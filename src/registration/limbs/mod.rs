@@ -184,38 +184,28 @@ impl Limbs {
             rigid: Rigid::new(lattice, Matrix::identity() * scale),
             levels: &levels,
         };
-        let first = finder_at(scale);
-        let given = first.put_in(places.to_vec(), layers);
+        let mut finders = vec![finder_at(scale)];
+        let given = finders[0].put_in(places.to_vec(), layers);
         let before = given.energy;
-        let grown = if before > GOOD {
-            let drawn = std::iter::once(finder_at(scale));
-            let hidden = GROWN_SCALES
-                .iter()
-                .filter(|_| before > HOPELESS)
-                .map(|factor| finder_at(factor * comparison.least_scale()));
-            let finders: Vec<Finder<'_>> = drawn.chain(hidden).collect();
-            growth::grown(finders)?
-        } else {
-            None
-        };
-        let given = (first, given);
-        // One may lead where the other does not; what explains far less leads nowhere.
+        if before > HOPELESS {
+            finders.extend(GROWN_SCALES.map(|factor| finder_at(factor * comparison.least_scale())));
+        }
+        let grown = if before > GOOD { growth::grown(&finders)? } else { None };
+        // By finder. One may lead where the other does not; what explains far less leads nowhere.
         let beginnings = match grown {
-            Some(grown) if grown.1.energy >= FAR_WORSE * before => vec![given],
+            Some((_, grown)) if grown.energy >= FAR_WORSE * before => vec![(0, given)],
             Some(grown) if before > FAR_WORSE * grown.1.energy => vec![grown],
-            Some(grown) => vec![given, grown],
-            None => vec![given],
+            Some(grown) => vec![(0, given), grown],
+            None => vec![(0, given)],
         };
-        let improved: Vec<(Finder<'_>, Put)> = (beginnings.into_par_iter())
-            .map(|(finder, beginning)| {
-                let put = finder.improved(beginning)?;
-                Ok((finder, put))
-            })
+        let improved: Vec<(usize, Put)> = (beginnings.into_par_iter())
+            .map(|(finder, beginning)| Ok((finder, finders[finder].improved(beginning)?)))
             .collect::<Result<_, RegistrationError>>()?;
-        let by_energy = |a: &(Finder<'_>, Put), b: &(Finder<'_>, Put)| a.1.energy.total_cmp(&b.1.energy);
+        let by_energy = |a: &(usize, Put), b: &(usize, Put)| a.1.energy.total_cmp(&b.1.energy);
         let Some((finder, found)) = improved.into_iter().min_by(by_energy) else {
             return Err(RegistrationError::NoFigure);
         };
+        let finder = &finders[finder];
         let mut sought = Sought {
             places: found.places,
             form: Matrix::identity() * finder.search.scale,

@@ -32,6 +32,13 @@ struct Fastened {
     to: Point,
 }
 
+impl Fastened {
+    /// Where it is if the vertices are at `places`.
+    fn put(&self, places: &[Point], scale: f64) -> Point {
+        places[self.vertex] + self.aside * scale
+    }
+}
+
 impl Pinned {
     pub(super) fn new(pair: &Pair<'_>, limbs: &Articulation) -> Self {
         let mut pinned = Self {
@@ -52,9 +59,9 @@ impl Pinned {
         pinned
     }
 
-    /// Whether there is a pin in a band.
-    pub(super) fn is_on(&self, node: usize) -> bool {
-        !self.of_node[node].is_empty()
+    /// Whether there is a pin in some bands.
+    pub(super) fn is_on(&self, nodes: &[usize]) -> bool {
+        nodes.iter().any(|node| !self.of_node[*node].is_empty())
     }
 
     /// What a band costs a vertex whose pins are put by `place`, which has where a place of the reference goes; `points` are the reference's vertices.
@@ -66,21 +73,20 @@ impl Pinned {
 
     /// What a figure costs whose vertices are at `places`, `scale` times as large as the reference.
     pub(super) fn of_figure(&self, places: &[Point], scale: f64) -> f64 {
-        let missed = |pin: &Fastened| self.missed(places[pin.vertex] + pin.aside * scale, pin.to);
+        let missed = |pin: &Fastened| self.missed(pin.put(places, scale), pin.to);
         FIGURE_COST * self.pins.iter().map(missed).sum::<f64>()
     }
 
     /// Whether all pins of some bands are met.
     pub(super) fn are_met(&self, nodes: &[usize], places: &[Point], scale: f64) -> bool {
-        let pins = nodes
+        let mut pins = nodes
             .iter()
             .flat_map(|node| &self.of_node[*node])
             .map(|pin| &self.pins[*pin]);
-        pins.into_iter()
-            .all(|pin| self.missed(places[pin.vertex] + pin.aside * scale, pin.to) <= 0.0)
+        pins.all(|pin| self.missed(pin.put(places, scale), pin.to) <= 0.0)
     }
 
-    /// From 0 to 1.
+    /// How badly a place misses `to`, from 0 to 1.
     fn missed(&self, place: Point, to: Point) -> f64 {
         (((place - to).norm() / self.spacing - MET) / MISSED).clamp(0.0, 1.0)
     }

@@ -45,6 +45,7 @@ const EXPLAINED: f64 = 0.2;
 /// Chains are tried in pairs where they come this near to one another, in spacings, and neither has more than so many times the other's vertices.
 const PAIR_REACH: f64 = 3.0;
 const PAIR_SIZES: f64 = 2.5;
+
 /// A level with what is compared at it.
 pub(super) struct Fine<'a> {
     pub(super) level: &'a Level,
@@ -108,7 +109,8 @@ impl Finder<'_> {
         for &chain in chains.iter().filter(|chain| !self.limbs.chains[**chain].continues) {
             let others = self.comparison.least(layers, |_| true);
             let line = self.limbs.line(chain);
-            let best = self.search.of_line(&line, places, &others, 1).into_iter().next();
+            let (bands, rest) = (self.limbs.bands(&line), self.search.rest(&others));
+            let best = self.search.put_from_joint(&bands, places, &rest, 1).into_iter().next();
             for (v, place) in best.into_iter().flat_map(|best| best.places) {
                 places[v] = place;
             }
@@ -178,10 +180,10 @@ impl Finder<'_> {
         below.retain(|other| !line.contains(other));
         let leaves = |other: usize| !line.contains(&other) && !below.contains(&other) && !gone.contains(&other);
         let others = self.comparison.least(&now.layers, leaves);
-        let mut hypotheses = self.search.of_line(&line, &now.places, &others, most);
-        let mut nodes = line.iter().flat_map(|chain| &self.limbs.chains[*chain].nodes);
-        if nodes.any(|node| self.search.pinned.is_on(*node)) {
-            hypotheses.extend(self.search.of_line_from_tip(&line, &now.places, &others, most));
+        let (bands, rest) = (self.limbs.bands(&line), self.search.rest(&others));
+        let mut hypotheses = self.search.put_from_joint(&bands, &now.places, &rest, most);
+        if self.search.pinned.is_on(&bands) {
+            hypotheses.extend(self.search.put_from_tip(&bands, &now.places, &rest, most));
         }
         (hypotheses.into_par_iter())
             .map(|hypothesis| {
@@ -189,10 +191,7 @@ impl Finder<'_> {
                 for (v, place) in hypothesis.places {
                     places[v] = place;
                 }
-                for &other in gone {
-                    layers[other].fill(BARE);
-                }
-                for &other in &below {
+                for &other in gone.iter().chain(&below) {
                     layers[other].fill(BARE);
                 }
                 for &chain in &line {
