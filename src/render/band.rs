@@ -3,6 +3,7 @@
 //! The spans of all triangles in these rows, ordered so that textures are read in long runs -> colours; then the edge's
 //! areas -> what is left to be done where the colours and the outline disagree. [`super::painter`] has the whole.
 
+use std::cmp::Reverse;
 use std::ops::Range;
 
 use super::affine_map::{AffineMap, TriangleFrame};
@@ -37,6 +38,8 @@ pub(super) struct Shown<'a> {
 /// What all bands of a frame share.
 pub(super) struct BandPainter<'a> {
     pub(super) triangles: &'a [[usize; 3]],
+    /// Whether triangles may lie over one another, the later ones in front.
+    pub(super) in_order: bool,
     /// In samples, from the window's corner.
     pub(super) vertices: &'a PlacedVertices,
     pub(super) shown: &'a [Shown<'a>],
@@ -182,6 +185,9 @@ impl BandPainter<'_> {
             }
             spans.push((span, maps.len() - self.shown.len()));
         });
+        if self.in_order {
+            spans = foremost(spans, width);
+        }
         // Spans come triangle by triangle: those at one place stay in that order.
         let order = |span: &Span| [span.start / STRIP_SAMPLES, span.row, span.start];
         spans.sort_by_key(|(span, _)| order(span).iter().fold(0, |key, part| key << 20 | *part as u64));
@@ -241,6 +247,38 @@ impl BandPainter<'_> {
         }
         sums
     }
+}
+
+/// The pieces of spans that no later span lies over; what belongs to a span stays with its pieces.
+fn foremost(mut spans: Vec<(Span, usize)>, width: usize) -> Vec<(Span, usize)> {
+    spans.sort_by_key(|(span, _)| (span.row, Reverse(span.triangle)));
+    let mut pieces = Vec::with_capacity(spans.len());
+    let mut is_covered = vec![false; width];
+    let mut row = usize::MAX;
+    for (span, of) in spans {
+        if span.row != row {
+            is_covered.fill(false);
+            row = span.row;
+        }
+        let mut start = span.start;
+        while start < span.end {
+            let free = is_covered[start..span.end]
+                .iter()
+                .take_while(|covered| !**covered)
+                .count();
+            if free > 0 {
+                is_covered[start..start + free].fill(true);
+                let end = start + free;
+                pieces.push((Span { start, end, ..span }, of));
+            }
+            start += free;
+            start += is_covered[start..span.end]
+                .iter()
+                .take_while(|covered| **covered)
+                .count();
+        }
+    }
+    pieces
 }
 
 impl Band {

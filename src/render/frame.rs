@@ -67,6 +67,21 @@ impl Frame {
             );
         }
     }
+
+    /// Mixes in another picture of the same size, which is all that is left at a `share` of 1. Where `other` is larger or smaller, the common part counts.
+    pub(super) fn mix(&mut self, other: &Frame, share: f64) {
+        let share = (share.clamp(0.0, 1.0) * f64::from(WHOLE)).round() as u32;
+        if self.width == 0 || other.width == 0 {
+            return;
+        }
+        let rows = self.pixels.chunks_exact_mut(self.width);
+        for (row, other) in rows.zip(other.pixels.chunks_exact(other.width)) {
+            for (own, other) in row.iter_mut().flatten().zip(other.iter().flatten()) {
+                let sum = u32::from(*own) * (WHOLE - share) + u32::from(*other) * share;
+                *own = ((sum + WHOLE / 2) / WHOLE) as u8;
+            }
+        }
+    }
 }
 
 /// A whole opacity: with it, sums of two channels times 255 fit 32 bits.

@@ -196,21 +196,24 @@ impl Painter {
             Sampling::Smooth => self.silhouette.at(positions, weights),
             Sampling::Nearest => Vec::new(),
         };
-        self.paint_within(positions, weights, texture_weights, rings)
+        self.paint_within((positions, weights, texture_weights), (&self.triangles, false), rings)
     }
 
-    /// This painter with some triangles of the mapping's mesh alone.
-    pub(super) fn of_triangles(mut self, triangles: Vec<[usize; 3]>) -> Self {
-        self.triangles = triangles;
-        self
-    }
-
-    /// A frame as of [`Self::paint`], cut out by `rings` instead of the silhouette.
-    pub(super) fn paint_within(
+    /// A frame as of [`Self::paint`], cut out by `rings` instead of the silhouette and of some triangles of the mapping's mesh alone, which may lie over one another: from
+    /// back to front.
+    pub(super) fn paint_patch(
         &self,
-        positions: &[Point],
-        weights: &[f64],
-        texture_weights: &[f64],
+        (positions, weights, texture_weights): (&[Point], &[f64], &[f64]),
+        triangles: &[[usize; 3]],
+        rings: Vec<Vec<Point>>,
+    ) -> Frame {
+        self.paint_within((positions, weights, texture_weights), (triangles, true), rings)
+    }
+
+    fn paint_within(
+        &self,
+        (positions, weights, texture_weights): (&[Point], &[f64], &[f64]),
+        (triangles, in_order): (&[[usize; 3]], bool),
         rings: Vec<Vec<Point>>,
     ) -> Frame {
         let carried = self.mesh.as_ref().map(|mesh| mesh.at(positions, weights));
@@ -249,12 +252,13 @@ impl Painter {
             .map(|p| (self.camera.to_pixels(*p) - shift) * samples)
             .collect();
         let vertices = PlacedVertices::new(&placed);
-        let shown = self.shown(&vertices, texture_weights);
+        let shown = self.shown(&vertices, triangles, texture_weights);
         if shown.is_empty() {
             return frame;
         }
         let painter = BandPainter {
-            triangles: &self.triangles,
+            triangles,
+            in_order,
             vertices: &vertices,
             shown: &shown,
             window: &window,
@@ -322,10 +326,15 @@ impl Painter {
     }
 
     /// The textures that count, in the pictures that fit their size in the frame.
-    fn shown<'a>(&'a self, vertices: &PlacedVertices, texture_weights: &[f64]) -> Vec<Shown<'a>> {
+    fn shown<'a>(
+        &'a self,
+        vertices: &PlacedVertices,
+        triangles: &[[usize; 3]],
+        texture_weights: &[f64],
+    ) -> Vec<Shown<'a>> {
         let counting = self.counting(texture_weights);
         let weights: Vec<f64> = counting.iter().map(|(_, weight)| *weight).collect();
-        let samples = vertices.covered_area(&self.triangles);
+        let samples = vertices.covered_area(triangles);
         counting
             .iter()
             .zip(whole_weights(&weights))

@@ -60,7 +60,8 @@ impl Pictures<'_> {
         let triangles = self.mapping.poses.topology().triangles();
         let positions = self.mapping.poses.positions();
         let size = [picture.width, picture.height];
-        for &t in painted {
+        // What is painted last is seen.
+        for &t in painted.iter().rev() {
             let corners = triangles[t].map(|v| picture.to_pixels(positions[pose][v]));
             for_each_cell(corners, size, |pixel, [u, v]| {
                 if !hidden[pixel] || picture.pixels[pixel] != [0; 4] {
