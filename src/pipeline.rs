@@ -29,6 +29,7 @@ mod landmark_ring;
 mod landmarks;
 mod layer;
 mod layout;
+mod limbs_said;
 mod mapping;
 mod named;
 mod note;
@@ -47,7 +48,7 @@ mod weighting;
 pub use build::Build;
 pub use character::Character;
 pub use deformed::DeformedPose;
-pub use error::{LandmarkPlace, PipelineError};
+pub use error::{LandmarkPlace, OverlapMisfit, PipelineError};
 pub use figure::Posed;
 pub use landmark_ring::INTERIOR_DEPTH;
 pub use layer::{LayerShape, PosedLayer};
@@ -59,8 +60,8 @@ pub use reach::{Reach, ReachOptions, ShapePoint, reach, reach_landmarks, reach_n
 pub use report::{MappingReport, Stage};
 pub use spec::{
     ArtChoice, Attachment, CameraRule, CharacterSpec, DeformedCopy, DrawnPose, Facing, HandleMove, LandmarkSpec,
-    LayerRole, LayerSpec, MeshOptions, OverlapSearch, PathSpec, Places, PoseShape, PoseSpec, Register, ShrunkCopy,
-    SpaceSpec, SpecError, SvgSource, TextureSpec, UnsharedHoles, WeightOptions,
+    LayerRole, LayerSpec, LimbSpec, MeshOptions, OverlapSearch, PathSpec, Places, PoseShape, PoseSpec, Register,
+    ShrunkCopy, SpaceSpec, SpecError, SvgSource, TextureSpec, UnsharedHoles, WeightOptions,
 };
 pub use triangulation::{Refinement, triangulate_polygons};
 pub use weighting::{EditableWeights, checked_weights, editable_weights};

@@ -118,7 +118,32 @@
 //! overlaps = "refuse"   # outlines have to correspond as they are; "auto" without it
 //! ```
 //!
-//! Landmarks help here as elsewhere: one in the middle of a hand, inside in both drawings, says which hand it is. `inbetween map` writes which poses lie over themselves (`immersed`), how near every
+//! Landmarks help here as elsewhere: one in the middle of a hand, inside in both drawings, says which hand it is. More is said by naming the limb:
+//!
+//! ```toml
+//! [[part]]
+//! name = "arm"
+//! at = { stand = [316, 96], walk = [112, 228] }     # its hand, roughly: where it is apart, and where it is seen
+//! cut = { stand = [[228, 120], [238, 150]] }        # optional: a line across the figure where it begins
+//!
+//! [[pose]]
+//! name = "stand"
+//! source = "stand.png"
+//!
+//! [[pose]]
+//! name = "walk"
+//! source = "walk.png"
+//! order = ["arm", "trunk", "limb 2"]                # from back to front, as far as it matters
+//! ```
+//!
+//! - One of its places is in the open drawing, or in another that shows all parts apart. In any other pose the limb is sought near its place there, in front of what else
+//!   lies there.
+//! - Without a `cut` a limb begins where the figure widens. With one, it also does where nothing widens: half a tail, the lower part of a sleeve.
+//! - `order` holds whatever the drawing shows. `trunk` is what belongs to no limb, `limb 1` and so on are limbs without a name, by their numbers under `limbs` in the mapping.
+//! - A pose that is named here is looked at for overlapping parts even if its outline does not ask for it. If its limbs cannot be placed, it is refused, with the place where most is left
+//!   unexplained. In a scene with layers a part says which `layer` it is on, and `order` is that of the layers.
+//!
+//! `inbetween map` writes which poses lie over themselves (`immersed`), how near every
 //! triangle is there, and the limbs. What no drawing shows apart cannot be found, nor what lies within the open drawing's own silhouette: draw one pose with the arms away from
 //! the body. Such a character is painted as pixels, its SVG drawings too; pixel art (`sampling = "nearest"`) is painted without the order of depth; Spine, glTF and the runtime file have its mesh without the order of depth.
 //!

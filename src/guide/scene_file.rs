@@ -51,6 +51,7 @@
 //! keep = []                       # none: places of loose parts that belong to the figure
 //! drop = []                       # none: places of parts that do not
 //! figure = "lines"                # as [input] says; `gap`, `paper` and `threshold` likewise
+//! order = ["arm", "trunk"]        # as it is seen: limbs from back to front; layers in a scene with layers
 //!
 //! [[pose]]
 //! name = "wave"
@@ -84,6 +85,11 @@
 //! name = "belt"
 //! path = true                     # false: true for lines
 //! at = { stand = [[88, 210], [120, 216], [151, 209]] }
+//!
+//! [[part]]                        # any number: a limb that lies over others, see the chapter on drawings
+//! name = "arm"
+//! at = { stand = [150.0, 200.0], wave = [96.0, 140.0] }
+//! cut = { stand = [[140.0, 170.0], [165.0, 172.0]] }     # where the figure widens
 //!
 //! [[region]]                      # any number, see the chapter on blending
 //! landmark = "nose"

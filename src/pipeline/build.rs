@@ -29,8 +29,8 @@ use super::layout::placed;
 use super::mapping::map_drawings_again;
 use super::note::Note;
 use super::spec::{
-    ArtChoice, CameraRule, CharacterSpec, DrawnPose, LandmarkSpec, LayerSpec, MeshOptions, OverlapSearch, PathSpec,
-    Places, PoseSpec, Register, WeightOptions,
+    ArtChoice, CameraRule, CharacterSpec, DrawnPose, LandmarkSpec, LayerSpec, LimbSpec, MeshOptions, OverlapSearch,
+    PathSpec, Places, PoseSpec, Register, WeightOptions,
 };
 use super::{
     Character, EditableWeights, MappingReport, PipelineError, checked_weights, editable_weights, landmarks, textures,
@@ -78,6 +78,8 @@ struct MappingInput {
     reference: Option<usize>,
     landmarks: Vec<LandmarkSpec>,
     paths: Vec<PathSpec>,
+    limbs: Vec<LimbSpec>,
+    limb_orders: Vec<Vec<String>>,
     mesh: MeshOptions,
     overlaps: OverlapSearch,
 }
@@ -89,6 +91,8 @@ impl MappingInput {
             reference: layer.reference,
             landmarks: layer.landmarks.clone(),
             paths: layer.paths.clone(),
+            limbs: layer.limbs.clone(),
+            limb_orders: layer.limb_orders.clone(),
             mesh: layer.mesh.clone(),
             overlaps: layer.overlaps,
         }

@@ -4,6 +4,7 @@ use super::spec::SpecError;
 use crate::animation::AnimationError;
 use crate::blend::BlendError;
 use crate::input::InputError;
+use crate::math::Point;
 use crate::texture::TextureError;
 use crate::weights::WeightError;
 
@@ -214,6 +215,47 @@ pub enum PipelineError {
         /// Those there are.
         known: String,
     },
+    /// A limb is named where there is none that can be told from the rest.
+    #[error("part '{limb}': on pose '{pose}', {problem}")]
+    Limb {
+        /// Its name.
+        limb: String,
+        /// The pose that shows the parts apart.
+        pose: String,
+        /// What is wrong and what to do.
+        problem: String,
+    },
+    /// An order names a limb that there is not.
+    #[error(
+        "the order of pose '{pose}' names '{limb}', but the limbs that were found are {known}, and 'trunk' is the rest; correct the name, or add a [[part]] with it"
+    )]
+    UnknownLimb {
+        /// The name.
+        limb: String,
+        /// The pose.
+        pose: String,
+        /// Those there are.
+        known: String,
+    },
+    /// Something is said of limbs in a pose where nothing is drawn that could show them.
+    #[error(
+        "pose '{pose}' is a silhouette without anything drawn inside, which does not show how limbs lie over one another; draw them as layers, or remove what [[part]] and `order` \
+         say of it"
+    )]
+    LimbsUnseen {
+        /// The pose.
+        pose: String,
+    },
+    /// Parts of a pose lie over one another, and the mesh cannot follow them there.
+    #[error(
+        "pose '{pose}': its parts seem to lie over one another, but {misfit}; a landmark or a [[part]] with a place there may help, or draw that part as a layer"
+    )]
+    Overlap {
+        /// The pose.
+        pose: String,
+        /// What does not fit.
+        misfit: OverlapMisfit,
+    },
     /// A landmark without a place.
     #[error("landmark '{landmark}' lies on no pose; give it a place on at least one")]
     LandmarkNowhere {
@@ -279,6 +321,49 @@ pub enum LandmarkPlace {
     Nowhere,
 }
 
+/// Why the mesh cannot follow limbs to where they were found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum OverlapMisfit {
+    /// It covers too little of the figure, or too much beside it.
+    Cover {
+        /// What mesh and figure have in common, of what either has.
+        share: f64,
+        /// What they must have.
+        least: f64,
+        /// Where most is missing, in the drawing's coordinates as it is used.
+        at: Point,
+    },
+    /// It stays away from a place that is marked.
+    Mark {
+        /// The place, in the drawing's coordinates as it is used.
+        at: Point,
+    },
+    /// It folds.
+    Fold,
+}
+
+impl std::fmt::Display for OverlapMisfit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Cover { share, least, at } => write!(
+                f,
+                "where its limbs were found they explain {:.1} % of its figure ({:.1} % are needed), least near ({:.0}, {:.0})",
+                100.0 * share,
+                100.0 * least,
+                at.x,
+                at.y
+            ),
+            Self::Mark { at } => write!(
+                f,
+                "the mesh cannot be brought onto the mark near ({:.0}, {:.0}) without being turned over",
+                at.x, at.y
+            ),
+            Self::Fold => f.write_str("the mesh would be folded where its limbs were found"),
+        }
+    }
+}
+
 impl std::fmt::Display for LandmarkPlace {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
@@ -331,6 +416,15 @@ impl PipelineError {
         }
     }
 
+    /// The limb that it is about, where one is named.
+    #[must_use]
+    pub fn limb(&self) -> Option<&str> {
+        match self.within_layer() {
+            Self::Limb { limb, .. } => Some(limb),
+            _ => None,
+        }
+    }
+
     /// The pose that it is about, where one is named.
     #[must_use]
     pub fn pose(&self) -> Option<&str> {
@@ -350,6 +444,10 @@ impl PipelineError {
             | Self::LandmarkOrder { pose, .. }
             | Self::LandmarksCoincide { pose, .. }
             | Self::Deformation { pose, .. } => Some(pose),
+            Self::Limb { pose, .. }
+            | Self::UnknownLimb { pose, .. }
+            | Self::LimbsUnseen { pose }
+            | Self::Overlap { pose, .. } => Some(pose),
             Self::Stage { pose, .. } => pose.as_deref(),
             _ => None,
         }

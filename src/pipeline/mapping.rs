@@ -94,16 +94,32 @@ pub(super) fn map_drawn(
     // Where parts lie over one another, landmarks may lie as they must not elsewhere: they are refused when that is known.
     let landmarks = landmarks::sorted(layer, drawings);
     let mut found = overlapping::found(layer, drawings, landmarks.as_ref().ok())?;
+    let mut misfit = None;
     while let Some(overlapping) = found {
         match map_overlapping(layer, drawings, &overlapping, notes.clone(), begins)? {
             // A mesh that goes around one of its holes otherwise than in the other poses cannot be blended.
             Ok(mapped) if RigidBlend::new(&mapped.0.poses, &BlendOptions::default()).is_err() => break,
             Ok(mapped) => return Ok(mapped),
-            // What was found in these poses is not enough: they are mapped as ever.
-            Err(Unfit(poses)) => found = overlapping.without(&poses),
+            // What was found in these poses is not enough: they are mapped as ever, but for those that the artist says more of.
+            Err(Unfit(poses)) => {
+                let asked = poses.iter().find(|(pose, _)| overlapping.is_asked(*pose));
+                misfit = misfit.or(asked.map(|(pose, misfit)| PipelineError::Overlap {
+                    pose: names[*pose].clone(),
+                    misfit: *misfit,
+                }));
+                let poses: Vec<usize> = poses.into_iter().map(|(pose, _)| pose).collect();
+                found = overlapping.without(&poses);
+            }
         }
     }
-    let landmarks = landmarks?;
+    // Where landmarks lie as they must not, since parts lie over one another, that is what is wrong.
+    let landmarks = match (landmarks, misfit) {
+        (Ok(landmarks), None) => landmarks,
+        (Ok(_), Some(misfit)) if layer.has_limbs() => return Err(misfit),
+        (Ok(landmarks), Some(_)) => landmarks,
+        (Err(_), Some(misfit)) => return Err(misfit),
+        (Err(error), None) => return Err(error),
+    };
     let known = Known::of(&landmarks);
     let boundaries = match before.filter(|before| before.serve(layer, &known)) {
         Some(same) => Arc::clone(same),

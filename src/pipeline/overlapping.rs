@@ -3,7 +3,8 @@
 //! Drawings of a layer -> which of them lie over themselves, and where the open ones' mesh is in them.
 //!
 //! 1. Where parts lie over one another the outline is shorter, for the same area, than where all are apart. The drawing with the longest one is the *open* one that the others are
-//!    compared with; those whose outline is clearly shorter may lie over themselves, and those whose landmarks say so: they come in another order, or lie inside.
+//!    compared with; those whose outline is clearly shorter may lie over themselves, and those whose landmarks say so: they come in another order, or lie inside; and
+//!    those that the artist says something of limbs of.
 //!    Where there are none, nothing of this costs anything.
 //! 2. The limbs of the open drawing are sought in these ([`crate::registration`]). One lies over itself if that explains it clearly better, and parts that do not hang together
 //!    then lie on the same place.
@@ -18,6 +19,7 @@ use super::PipelineError;
 use super::boundaries::Matched;
 use super::drawn::{Known, RegistrationGuide, match_by_drawing};
 use super::landmarks::{self, Landmarks};
+use super::limbs_said::{LimbsSaid, poses_said};
 use super::spec::{LayerSpec, OverlapSearch};
 use crate::appearance::Appearance;
 use crate::input::Drawing;
@@ -45,6 +47,10 @@ pub(super) struct Overlapping {
     pub(super) matched: Matched,
     /// By pose, places of the template and its own that are marked as one.
     pub(super) marked: Vec<Vec<[Point; 2]>>,
+    /// What the artist says of limbs.
+    pub(super) said: LimbsSaid,
+    /// The poses that something is said of, or whose landmarks lie as they cannot where parts are apart.
+    asked: Vec<usize>,
     /// By pose, how it lies over itself; `None` of those that are mapped as ever.
     pub(super) poses: Vec<Option<Overlap>>,
 }
@@ -69,8 +75,12 @@ pub(super) fn found(
     };
     let is_shorter = |pose: usize| (MUCH_SHORTER..SHORTER).contains(&(lengths[pose] / lengths[template]));
     let otherwise = marked_otherwise(layer, drawings, landmarks, template);
+    let said_of = poses_said(layer, template);
+    let asked: Vec<usize> = (0..lengths.len())
+        .filter(|pose| otherwise.contains(pose) || said_of.contains(pose))
+        .collect();
     let shorter: Vec<usize> = (0..lengths.len())
-        .filter(|pose| is_shorter(*pose) || otherwise.contains(pose))
+        .filter(|pose| is_shorter(*pose) || asked.contains(pose))
         .collect();
     if shorter.is_empty() {
         return Ok(None);
@@ -78,15 +88,25 @@ pub(super) fn found(
     let appearances: Vec<Arc<Appearance>> = (drawings.par_iter())
         .map(|drawing| Arc::new(Appearance::opened(drawing)))
         .collect();
+    let names = layer.names();
+    let unseen = |pose: usize| PipelineError::LimbsUnseen {
+        pose: names[pose].clone(),
+    };
     if !appearances[template].is_drawn() {
-        return Ok(None);
+        return if said_of.is_empty() {
+            Ok(None)
+        } else {
+            Err(unseen(template))
+        };
+    }
+    if let Some(pose) = said_of.iter().find(|pose| !appearances[**pose].is_drawn()) {
+        return Err(unseen(*pose));
     }
     let mut outlines: Vec<Outline> = drawings.iter().map(|drawing| drawing.outline.clone()).collect();
     let options = MatchOptions {
         reference: Some(template),
         ..MatchOptions::default()
     };
-    let names = layer.names();
     // Where parts lie over one another, what is marked may come in any order along the outline, or lie inside.
     let open: Vec<usize> = (0..drawings.len()).filter(|pose| !shorter.contains(pose)).collect();
     let Ok(landmarks) = landmarks::sorted(&layer.marked_only_in(&open), drawings) else {
@@ -99,21 +119,22 @@ pub(super) fn found(
     let Ok((matched, mut guide)) = matched else {
         return Ok(None);
     };
-    guide.registration.find_limbs();
+    let said = LimbsSaid::new(layer, &guide, &open)?;
     let sought: Vec<Option<FoundLimbs>> = (shorter.par_iter())
         .map(|&pose| {
             if !appearances[pose].is_drawn() {
                 return None;
             }
             // Where nothing can be compared, the ordinary way says why.
-            guide.registration.seek_limbs(pose).ok().flatten()
+            guide.registration.seek_limbs(pose, said.of(pose)).ok().flatten()
         })
         .collect();
     let mut poses: Vec<Option<Overlap>> = vec![None; drawings.len()];
     for (pose, found) in shorter.into_iter().zip(sought) {
         let lies_over = |found: &FoundLimbs| {
             // What is marked has put parts over one another before their limbs were sought.
-            if !marked[pose].is_empty() && found.overlap.share >= LEAST_OVERLAP || otherwise.contains(&pose) {
+            let is_marked = !marked[pose].is_empty() || said_of.contains(&pose);
+            if is_marked && found.overlap.share >= LEAST_OVERLAP || otherwise.contains(&pose) {
                 return true;
             }
             let [before, after] = found.overlap.unexplained;
@@ -133,6 +154,8 @@ pub(super) fn found(
         guide,
         matched,
         marked,
+        said,
+        asked,
         poses,
     }))
 }
@@ -201,6 +224,11 @@ impl Overlapping {
         (0..self.poses.len())
             .filter(|pose| self.poses[*pose].is_none())
             .collect()
+    }
+
+    /// Whether the artist says that parts of a pose lie over one another.
+    pub(super) fn is_asked(&self, pose: usize) -> bool {
+        self.asked.contains(&pose)
     }
 
     /// What is left without some poses, which are then mapped as ever; `None` if nothing is.

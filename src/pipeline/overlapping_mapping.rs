@@ -6,6 +6,7 @@
 //! 2. Their mesh is bent, as rigidly as possible, to where the limbs were found in the poses that lie over themselves, and follows them without inverting a triangle.
 //! 3. Depths are those of the parts that triangles are in; landmarks are carried.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -15,7 +16,7 @@ use super::mapping::map_drawn;
 use super::note::{Note, NoteKind};
 use super::overlapping::Overlapping;
 use super::spec::{LayerSpec, OverlapSearch};
-use super::{MappingReport, PipelineError, Stage};
+use super::{MappingReport, OverlapMisfit, PipelineError, Stage};
 use crate::compatible::{Guide, follow};
 use crate::input::Drawing;
 use crate::matching::Correspondence;
@@ -33,6 +34,8 @@ const OVERLAPPING_TOLERANCE: f64 = 0.3;
 const LEAST_COVER: f64 = 0.931;
 /// Cells along the diagonal that this is counted on.
 const COVER_CELLS: f64 = 500.0;
+/// What is missing is counted in squares of so many cells.
+const SQUARE_CELLS: usize = 20;
 /// How far off a landmark the mesh may stay at most, as a fraction of the diagonal.
 const LANDMARK_OFF: f64 = 0.02;
 /// The trust in the place of a vertex that an artist has marked: before all others.
@@ -45,8 +48,8 @@ const TRIES: usize = 6;
 /// A mapping, what is known of it, and the outlines' part of it.
 pub(super) type Mapped = (Mapping, MappingReport, Arc<Boundaries>);
 
-/// Poses in which what was found is not enough for a mesh.
-pub(super) struct Unfit(pub(super) Vec<usize>);
+/// Poses in which what was found is not enough for a mesh, and why.
+pub(super) struct Unfit(pub(super) Vec<(usize, OverlapMisfit)>);
 
 /// Maps a layer without copies some of whose drawings lie over themselves; `notes` are those that are known. Poses that the mesh cannot be brought onto, or does not
 /// cover there, are named instead.
@@ -60,7 +63,7 @@ pub(super) fn map_overlapping(
     let names = layer.names();
     let kept = overlapping.open();
     // What is marked in the other poses alone has no place here.
-    let mut open = layer.only(&kept).without_empty_marks();
+    let mut open = layer.only(&kept).without_limbs().without_empty_marks();
     open.overlaps = OverlapSearch::Refuse;
     // What lies over something shows its own edge there: the mesh is held closer to it.
     open.mesh.simplify.tolerance *= OVERLAPPING_TOLERANCE;
@@ -144,10 +147,10 @@ impl Overlapping {
         let template = kept.iter().position(|pose| *pose == self.guide.reference).unwrap_or(0);
         let topology = open.poses.topology();
         let reference = &open.poses.positions()[template];
-        let placed: Vec<Option<Vec<Point>>> = (0..names.len())
+        let placed: Vec<Result<Vec<Point>, OverlapMisfit>> = (0..names.len())
             .into_par_iter()
             .map(|pose| match kept.iter().position(|kept| *kept == pose) {
-                Some(number) => Some(open.poses.positions()[number].clone()),
+                Some(number) => Ok(open.poses.positions()[number].clone()),
                 None => {
                     let mut wanted: Vec<(Point, f64)> = (reference.iter())
                         .map(|p| {
@@ -164,13 +167,19 @@ impl Overlapping {
                     let beginning = bent(topology, reference, &wanted);
                     let placed = follow(topology, reference, beginning, &wanted);
                     let off = LANDMARK_OFF * point::diagonal(&placed);
-                    let are_met = marked.iter().all(|(v, to)| (placed[*v] - to).norm() < off);
-                    let is_valid = validity::check_immersion(topology, &placed, &open.rings).is_ok();
-                    (are_met && is_valid).then_some(placed)
+                    if let Some((_, at)) = marked.iter().find(|(v, to)| (placed[*v] - to).norm() >= off) {
+                        return Err(OverlapMisfit::Mark { at: *at });
+                    }
+                    match validity::check_immersion(topology, &placed, &open.rings) {
+                        Ok(()) => Ok(placed),
+                        Err(_) => Err(OverlapMisfit::Fold),
+                    }
                 }
             })
             .collect();
-        let unfit: Vec<usize> = (0..names.len()).filter(|pose| placed[*pose].is_none()).collect();
+        let unfit: Vec<(usize, OverlapMisfit)> = (placed.iter().enumerate())
+            .filter_map(|(pose, placed)| Some((pose, *placed.as_ref().err()?)))
+            .collect();
         if !unfit.is_empty() {
             return Ok(Err(Unfit(unfit)));
         }
@@ -200,16 +209,18 @@ impl Overlapping {
     }
 
     /// The poses whose figure is not what `mapping` covers of it: what was found there is not enough.
-    fn uncovered(&self, mapping: &Mapping) -> Vec<usize> {
-        let is_uncovered = |pose: &usize| {
-            self.poses[*pose].is_some()
-                && cover(
-                    mapping.poses.topology().triangles(),
-                    &mapping.poses.positions()[*pose],
-                    &mapping.outlines[*pose],
-                ) < LEAST_COVER
+    fn uncovered(&self, mapping: &Mapping) -> Vec<(usize, OverlapMisfit)> {
+        let misfit = |pose: usize| {
+            self.poses[pose].as_ref()?;
+            let (share, at) = cover(
+                mapping.poses.topology().triangles(),
+                &mapping.poses.positions()[pose],
+                &mapping.outlines[pose],
+            );
+            let least = LEAST_COVER;
+            (share < least).then_some((pose, OverlapMisfit::Cover { share, least, at }))
         };
-        (0..self.poses.len()).filter(is_uncovered).collect()
+        (0..self.poses.len()).filter_map(misfit).collect()
     }
 
     /// Depths and limbs of triangles, which are at `reference` in the template.
@@ -248,7 +259,7 @@ impl Overlapping {
             if let Some(limb) = limb {
                 pieces[*limb] += 1;
                 number_of[part] = Some(names.len());
-                names.push(format!("limb {}.{}", limb + 1, pieces[*limb]));
+                names.push(format!("{}.{}", self.said.name(*limb), pieces[*limb]));
             }
         }
         Overlaps {
@@ -272,15 +283,15 @@ fn nearest(positions: &[Point], place: Point) -> Option<usize> {
     (0..positions.len()).min_by(|a, b| away(a).total_cmp(&away(b)))
 }
 
-/// What the union of some triangles and the inside of an outline, less its openings, have in common, of what either has.
-fn cover(triangles: &[[usize; 3]], positions: &[Point], outline: &Outline) -> f64 {
+/// What the union of some triangles and the inside of an outline, less its openings, have in common, of what either has; and the middle of where most is missing.
+fn cover(triangles: &[[usize; 3]], positions: &[Point], outline: &Outline) -> (f64, Point) {
     let points = positions.iter().chain(outline.outer().points());
     let Some((low, high)) = point::bounding_box(points) else {
-        return 0.0;
+        return (0.0, Point::zeros());
     };
     let side = (high - low).norm() / COVER_CELLS;
     if side.is_nan() || side <= 0.0 {
-        return 0.0;
+        return (0.0, low);
     }
     // Casts saturate; both are at most the diagonal's.
     let size = [high.x - low.x, high.y - low.y].map(|length| (length / side) as usize + 1);
@@ -297,11 +308,21 @@ fn cover(triangles: &[[usize; 3]], positions: &[Point], outline: &Outline) -> f6
         .collect();
     let figure = Coverage::of(rings.iter().map(Vec::as_slice), size[0], size[1]);
     let (mut both, mut either) = (0usize, 0usize);
-    for (is_covered, area) in is_covered.into_iter().zip(figure.areas()) {
-        both += usize::from(is_covered && *area >= 0.5);
-        either += usize::from(is_covered || *area >= 0.5);
+    // By square of cells, how many of them one has and the other has not, and the sum of their places.
+    let mut missing: BTreeMap<[usize; 2], (usize, Point)> = BTreeMap::new();
+    for (cell, (is_covered, area)) in is_covered.into_iter().zip(figure.areas()).enumerate() {
+        let in_figure = *area >= 0.5;
+        both += usize::from(is_covered && in_figure);
+        either += usize::from(is_covered || in_figure);
+        if is_covered != in_figure {
+            let at = [cell % size[0], cell / size[0]];
+            let square = missing.entry(at.map(|along| along / SQUARE_CELLS)).or_default();
+            *square = (square.0 + 1, square.1 + Point::new(at[0] as f64, at[1] as f64));
+        }
     }
-    both as f64 / either.max(1) as f64
+    let most = missing.values().max_by_key(|(count, _)| *count);
+    let at = most.map_or(Point::zeros(), |(count, sum)| sum / *count as f64);
+    (both as f64 / either.max(1) as f64, low + at * side)
 }
 
 /// The mesh bent to where its vertices are wanted, as far as can be without inverting a triangle.

@@ -400,6 +400,15 @@ impl<'a> Pieces<'a> {
                 *at = None;
             }
         }
+        own.limbs.retain(|limb| self.thing_of_mark(&limb.at) == thing);
+        for limb in &mut own.limbs {
+            for (pose, _) in drawn.iter().enumerate().filter(|(_, is_drawn)| !**is_drawn) {
+                (limb.at[pose], limb.cut[pose]) = (None, None);
+            }
+        }
+        if thing > 0 {
+            own.limb_orders = Vec::new();
+        }
         own
     }
 

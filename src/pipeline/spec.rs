@@ -180,6 +180,11 @@ pub struct LayerSpec {
     pub landmarks: Vec<LandmarkSpec>,
     /// Lines that correspond.
     pub paths: Vec<PathSpec>,
+    /// Limbs that lie over other parts of the figure in some poses, as far as the artist says something of them.
+    pub limbs: Vec<LimbSpec>,
+    /// For each pose names of limbs from back to front, [`LimbSpec::TRUNK`] for what belongs to none; empty where nothing is said of the pose, or (the
+    /// default) of any. A limb that no one has named is called as [`Overlaps::limbs`](crate::pose::Overlaps) calls it, up to the point.
+    pub limb_orders: Vec<Vec<String>>,
     /// How fine the mesh is.
     pub mesh: MeshOptions,
     /// How its shapes are blended. Points are landmarks, by their places in `landmarks`; poses are those of the layer.
@@ -359,6 +364,35 @@ pub struct PathSpec {
     pub at: Vec<Option<Vec<Point>>>,
 }
 
+/// A limb that lies over other parts of the figure in some poses: an arm in front of the chest, a leg behind the other.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct LimbSpec {
+    /// Its name.
+    pub name: String,
+    /// A place on it for poses of the layer: a hand, a knee, roughly the same one in all of them. One of these poses shows the limb apart from the rest; in the
+    /// others it is sought near its place, and it is what is seen there. `None` of poses that nothing is said of, and of deformed copies.
+    pub at: Vec<Option<Point>>,
+    /// A line across the figure where the limb meets the rest, in a pose that shows it apart; without any it begins where the figure widens. At least two
+    /// points, no two successive ones equal.
+    pub cut: Vec<Option<Vec<Point>>>,
+}
+
+impl LimbSpec {
+    /// What belongs to no limb is called so in [`LayerSpec::limb_orders`].
+    pub const TRUNK: &'static str = "trunk";
+
+    /// The limb of this name with a place or `None` for each pose of the layer, without a line where it begins.
+    #[must_use]
+    pub fn new(name: impl Into<String>, at: Vec<Option<Point>>) -> Self {
+        Self {
+            name: name.into(),
+            cut: vec![None; at.len()],
+            at,
+        }
+    }
+}
+
 /// How fine the mesh of a layer is: the options of the two stages that decide it.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
@@ -421,6 +455,8 @@ impl LayerSpec {
             reference: None,
             landmarks: Vec::new(),
             paths: Vec::new(),
+            limbs: Vec::new(),
+            limb_orders: Vec::new(),
             mesh: MeshOptions::default(),
             blend: BlendOptions::default(),
             attachment: None,

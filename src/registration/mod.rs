@@ -32,6 +32,8 @@ mod rigid;
 mod template;
 mod textures;
 
+pub use limbs::LimbProblem;
+pub(crate) use limbs::{NamedLimb, Said, Seen};
 pub(crate) use register::difference;
 pub use register::{Explained, Pin, Registration, RegistrationError, RingPairs, register};
 pub(crate) use register::{FoundLimbs, Overlap};

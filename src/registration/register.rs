@@ -8,7 +8,7 @@ use super::beginning::{INSIDE, POINT_PX};
 use super::explained::Found;
 use super::lattice::Lattice;
 use super::levels::{LEVELS, Level};
-use super::limbs::{Limbs, Sought};
+use super::limbs::{LimbProblem, Limbs, NamedLimb, Said, Sought};
 use super::pair::Pair;
 use super::rigid::Rigid;
 use super::template::Template;
@@ -185,16 +185,33 @@ impl Registration {
         }
     }
 
-    /// Finds the limbs of the reference, before they are sought in several poses at once: what is made once for all must not be made by a task among them.
-    pub(crate) fn find_limbs(&self) {
-        let _ = self.searched.limbs();
+    /// Finds the limbs of the reference, before they are sought in several poses at once: what is made once for all must not be made by a task among them. For each
+    /// of `named`, which are places of the reference, the number of the limb there.
+    pub(crate) fn find_limbs(&self, named: &[NamedLimb]) -> Vec<Result<usize, LimbProblem>> {
+        let in_pixels: Vec<NamedLimb> = (named.iter())
+            .map(|limb| limb.mapped(|p| self.searched.reference.to_pixels(p)))
+            .collect();
+        match self.searched.limbs(&in_pixels) {
+            Some(limbs) => limbs.named().to_vec(),
+            None => vec![Err(LimbProblem::Outside); named.len()],
+        }
     }
 
-    /// The limbs of the reference, which [`Self::find_limbs`] has found, sought one by one in `pose`, where the figure may lie over itself.
+    /// The place of the reference that is nearest to `place` in `pose`; `None` as for [`carried`](Self::carried).
+    pub(crate) fn traced(&self, pose: usize, place: Point) -> Option<Point> {
+        let registered = self.poses.get(pose)?.as_ref()?;
+        let p = registered.appearance.to_pixels(place);
+        let away = |v: &usize| (registered.places[*v] - p).norm_squared();
+        let nearest = (0..registered.places.len()).min_by(|a, b| away(a).total_cmp(&away(b)))?;
+        Some(self.searched.reference.to_source(self.searched.lattice.points[nearest]))
+    }
+
+    /// The limbs of the reference, which [`Self::find_limbs`] has found, sought one by one in `pose`, where the figure may lie over itself and where an artist has `said`
+    /// of them what is in source units.
     ///
     /// # Errors
     /// [`RegistrationError`] as of [`register`].
-    pub(crate) fn seek_limbs(&self, pose: usize) -> Result<Option<FoundLimbs>, RegistrationError> {
+    pub(crate) fn seek_limbs(&self, pose: usize, said: &Said) -> Result<Option<FoundLimbs>, RegistrationError> {
         let searched = &self.searched;
         let limbs = searched.limbs.get().and_then(Option::as_ref);
         let Some((limbs, registered)) = limbs.zip(self.poses.get(pose).and_then(Option::as_ref)) else {
@@ -214,7 +231,15 @@ impl Registration {
             is_hidden,
             overlap,
             energies,
-        } = limbs.sought(&pair, &searched.templates, &registered.places, &registered.residuals)?;
+        } = limbs.sought(
+            &pair,
+            &searched.templates,
+            (&registered.places, &registered.residuals),
+            &said.mapped(
+                |p| searched.reference.to_pixels(p),
+                |p| registered.appearance.to_pixels(p),
+            ),
+        )?;
         let frames = Rigid::new(&searched.lattice, form).frames(&places, 0);
         let trusts = (registered.trusts.iter().zip(is_hidden))
             .map(|(trust, is_hidden)| if is_hidden { 0.0 } else { *trust })
@@ -292,10 +317,10 @@ impl Searched {
         })
     }
 
-    /// The limbs of the reference.
-    fn limbs(&self) -> Option<&Limbs> {
+    /// The limbs of the reference, those that are `named` there, in working pixels, among them.
+    fn limbs(&self, named: &[NamedLimb]) -> Option<&Limbs> {
         self.limbs
-            .get_or_init(|| Limbs::new(&self.lattice, &self.reference))
+            .get_or_init(|| Limbs::new(&self.lattice, &self.reference, named))
             .as_ref()
     }
 

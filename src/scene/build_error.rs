@@ -86,6 +86,9 @@ impl Scene {
             let name = whole(" (start)").or_else(|| whole(" (end)")).unwrap_or(name);
             return points.chain(lines).find(|(own, _)| *own == name).map(|(_, line)| line);
         }
+        if let Some(name) = error.limb() {
+            return own.limbs.iter().find(|limb| limb.name == name).map(|limb| limb.line);
+        }
         let pose = own.poses.iter().find(|pose| Some(pose.name.as_str()) == error.pose())?;
         match (&pose.source, error.within_layer()) {
             (PoseSource::Deformed(copy), PipelineError::Deformation { .. }) => Some(copy.line),

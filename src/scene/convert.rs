@@ -4,6 +4,7 @@ mod blending;
 mod deformed;
 mod landmarks;
 mod layered;
+mod limbs;
 mod playing;
 mod poses;
 
@@ -123,6 +124,7 @@ impl Reader<'_> {
         let names: Vec<&str> = poses.iter().map(|p| p.name.as_str()).collect();
         self.check_drawn(written.reference.as_ref(), &written.landmark, &written.pose)?;
         let (landmarks, paths) = self.landmarks(&written.landmark, &names, &layer_names)?;
+        let limbs = self.limbs(&written.part, &names, &layer_names)?;
         let reference = match &written.reference {
             Some(name) => Some(self.pose_index(name, "`reference`", &names)?),
             None => None,
@@ -193,6 +195,7 @@ impl Reader<'_> {
             pseudo_poses,
             landmarks,
             paths,
+            limbs,
             layers: Vec::new(),
         };
         self.check_layer_words(&written, &layer_names)?;

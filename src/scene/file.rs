@@ -27,6 +27,8 @@ pub(super) struct SceneFile {
     #[serde(default)]
     pub(super) landmark: Vec<Spanned<LandmarkTable>>,
     #[serde(default)]
+    pub(super) part: Vec<Spanned<PartTable>>,
+    #[serde(default)]
     pub(super) region: Vec<Spanned<RegionTable>>,
     #[serde(default)]
     pub(super) layer: Vec<Spanned<LayerTable>>,
@@ -114,7 +116,7 @@ pub(super) struct PoseTable {
     pub(super) turns: Option<Spanned<i64>>,
     pub(super) deform_of: Option<Spanned<String>>,
     pub(super) handles: Option<Spanned<Vec<HandleTable>>>,
-    /// Layers from back to front.
+    /// Layers from back to front, or limbs in a scene without.
     pub(super) order: Option<Spanned<Vec<Spanned<String>>>>,
 }
 
@@ -140,6 +142,18 @@ pub(super) struct LandmarkTable {
     /// A point a pose, or with `path` a polyline a pose.
     pub(super) at: BTreeMap<String, Spanned<Value>>,
     pub(super) path: Option<Spanned<bool>>,
+    pub(super) layer: Option<Spanned<String>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PartTable {
+    pub(super) name: Spanned<String>,
+    /// A point a pose.
+    pub(super) at: BTreeMap<String, Spanned<Value>>,
+    /// A polyline a pose.
+    #[serde(default)]
+    pub(super) cut: BTreeMap<String, Spanned<Value>>,
     pub(super) layer: Option<Spanned<String>>,
 }
 

@@ -88,10 +88,14 @@ impl Scene {
         for (path, whole) in scene.paths.iter_mut().zip(&self.paths) {
             path.at = kept.iter().map(|&k| whole.at[k].clone()).collect();
         }
+        for (limb, whole) in scene.limbs.iter_mut().zip(&self.limbs) {
+            limb.at = kept.iter().map(|&k| whole.at[k]).collect();
+            limb.cut = kept.iter().map(|&k| whole.cut[k].clone()).collect();
+        }
         scene
     }
 
-    /// The scene with only the landmarks and lines of layer `layer`, and what of its anchors and regions names them.
+    /// The scene with only the landmarks, lines and limbs of layer `layer`, and what of its anchors and regions names them.
     #[must_use]
     pub(super) fn with_landmarks_of(&self, layer: usize) -> Self {
         let kept: Vec<usize> = (0..self.landmarks.len())
@@ -100,6 +104,7 @@ impl Scene {
         let mut scene = self.clone();
         scene.landmarks = kept.iter().map(|&k| self.landmarks[k].clone()).collect();
         scene.paths.retain(|path| path.layer == Some(layer));
+        scene.limbs.retain(|limb| limb.layer == Some(layer));
         scene.blend = (self.blend).with_points_left(|index| kept.iter().position(|&k| k == index));
         scene
     }

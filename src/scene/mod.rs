@@ -31,7 +31,7 @@ pub use newcomer::Newcomer;
 pub use separated::{Separated, SeparatedDrawing, SeparatedLayer};
 pub use settings::{
     DeformedSource, DrawnSource, FrameSize, Holes, InputSettings, Layout, PoseSource, PoseSpaceSettings, Provider,
-    ReadingSettings, Scene, SceneLandmark, ScenePath, ScenePose,
+    ReadingSettings, Scene, SceneLandmark, SceneLimb, ScenePath, ScenePose,
 };
 pub use shape::{
     AxisSettings, JointScaling, JointSettings, JointShift, JointTurn, PseudoExample, ShapeExample, ShapeFile,

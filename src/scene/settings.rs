@@ -54,6 +54,8 @@ pub struct Scene {
     pub landmarks: Vec<SceneLandmark>,
     /// Lines that correspond, named by `path = true` landmarks.
     pub paths: Vec<ScenePath>,
+    /// Limbs that lie over other parts of a drawing, as far as the file names them.
+    pub limbs: Vec<SceneLimb>,
     /// Parts in front of one another, from back to front; empty if the drawings are whole.
     pub layers: Vec<SceneLayer>,
     /// What is played.
@@ -213,6 +215,8 @@ pub struct ScenePose {
     pub turns: i32,
     /// All layers from back to front, by index; empty in a scene without.
     pub draw_order: Vec<usize>,
+    /// Limbs from back to front, by name, in a scene without layers; empty where the file says nothing of them.
+    pub limb_order: Vec<String>,
 }
 
 /// Where a pose's shape comes from.
@@ -283,6 +287,21 @@ pub struct ScenePath {
     /// Its points on each pose from start to end, in source pixels or SVG user units; at least two, no two successive
     /// ones equal. `None` where the pose lacks it.
     pub at: Vec<Option<Vec<Point>>>,
+}
+
+/// A limb that the artist names since it lies over other parts in some poses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneLimb {
+    /// Its name.
+    pub name: String,
+    /// The line of the scene file.
+    pub line: usize,
+    /// The layer it is on, in a scene with layers.
+    pub layer: Option<usize>,
+    /// A place on it, in source pixels or SVG user units; `None` of poses that nothing is said of.
+    pub at: Vec<Option<Point>>,
+    /// A line where it meets the rest, in the same coordinates; at least two points, no two successive ones equal.
+    pub cut: Vec<Option<Vec<Point>>>,
 }
 
 impl Scene {

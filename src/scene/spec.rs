@@ -15,8 +15,8 @@ use crate::math::Point;
 use crate::math::point::bounding_box;
 use crate::pipeline::{
     Attachment, CameraRule, Character, CharacterSpec, DrawnPose, EditableWeights, Facing, LandmarkSpec, LayerParts,
-    LayerRole, LayerSpec, PathSpec, Places, PoseShape, PoseSpec, SpaceSpec, TextureSpec, UnsharedHoles, WeightOptions,
-    automatic_places, editable_weights, map_layer,
+    LayerRole, LayerSpec, LimbSpec, PathSpec, Places, PoseShape, PoseSpec, SpaceSpec, TextureSpec, UnsharedHoles,
+    WeightOptions, automatic_places, editable_weights, map_layer,
 };
 use crate::weights::{BiharmonicOptions, Range, RbfOptions};
 
@@ -265,6 +265,12 @@ impl Scene {
             name: path.name.clone(),
             at: path.at.clone(),
         });
+        let limbs = own.limbs.iter().map(|limb| {
+            let mut spec = LimbSpec::new(&limb.name, limb.at.clone());
+            spec.cut.clone_from(&limb.cut);
+            spec
+        });
+        let limb_orders: Vec<Vec<String>> = own.poses.iter().map(|pose| pose.limb_order.clone()).collect();
         let attachment = within.and_then(|layer| {
             let anchor = layer.anchor.as_ref()?;
             let landmark = own.landmarks.iter().position(|own| own.name == anchor.landmark)?;
@@ -279,6 +285,12 @@ impl Scene {
             reference: own.reference,
             landmarks: landmarks.collect(),
             paths: paths.collect(),
+            limbs: limbs.collect(),
+            limb_orders: if limb_orders.iter().all(Vec::is_empty) {
+                Vec::new()
+            } else {
+                limb_orders
+            },
             mesh: own.mesh.clone(),
             blend: BlendOptions {
                 turns: own.poses.iter().map(|pose| pose.turns).collect(),

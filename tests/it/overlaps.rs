@@ -4,8 +4,7 @@ use inbetween::animation::Animation;
 use inbetween::input::BitmapOptions;
 use inbetween::math::Point;
 use inbetween::mesh::PointLocator;
-use inbetween::pipeline::LandmarkSpec;
-use inbetween::pipeline::{OverlapSearch, map_layer};
+use inbetween::pipeline::{LandmarkSpec, LimbSpec, OverlapSearch, map_layer};
 use inbetween::pose::Mapping;
 use inbetween::{Character, CharacterSpec, Drawing, LayerSpec, PoseSpec, read_pixels};
 
@@ -127,6 +126,25 @@ fn mapped(layer: &LayerSpec) -> Mapping {
     mapping
 }
 
+/// Of the triangles of the second pose that hold a place the nearest one, and how many there are.
+fn nearest(mapping: &Mapping, place: Point) -> (usize, usize) {
+    let depth = mapping.overlaps.depth(1).expect("depths");
+    let there = triangles_at(mapping, 1, place);
+    let nearest = there.iter().max_by(|a, b| depth[**a].total_cmp(&depth[**b]));
+    (*nearest.expect("a triangle"), there.len())
+}
+
+/// The triangles of a pose that hold a place.
+fn triangles_at(mapping: &Mapping, pose: usize, place: Point) -> Vec<usize> {
+    let triangles = mapping.poses.topology().triangles();
+    let positions = &mapping.poses.positions()[pose];
+    let holds = |t: &usize| {
+        let corners = triangles[*t].map(|v| positions[v]);
+        inbetween::mesh::geometry::barycentric(corners, place).is_some_and(|b| b.iter().all(|b| *b >= 0.0))
+    };
+    (0..triangles.len()).filter(holds).collect()
+}
+
 /// Where the mesh takes a place of the first pose in the second.
 fn carried(mapping: &Mapping, place: Point) -> Point {
     let triangles = mapping.poses.topology().triangles();
@@ -157,28 +175,14 @@ fn an_arm_in_front_of_the_chest_is_found_and_lies_in_front() {
         let off = (carried(&mapping, place) - place).norm() / diagonal;
         assert!(off < 0.01, "{place} -> {}", carried(&mapping, place));
     }
-    let depth = mapping.overlaps.depth(1).expect("depths");
-    let triangles = mapping.poses.topology().triangles();
-    let at = |pose: usize, place: Point| -> Vec<usize> {
-        let positions = &mapping.poses.positions()[pose];
-        let holds = |t: &usize| {
-            let corners = triangles[*t].map(|v| positions[v]);
-            inbetween::mesh::geometry::barycentric(corners, place).is_some_and(|b| b.iter().all(|b| *b >= 0.0))
-        };
-        (0..triangles.len()).filter(holds).collect()
-    };
-    let elbow = at(0, stretched()[1]);
-    let there = at(1, across()[1]);
-    assert!(there.len() > 1, "elbow and chest");
-    let nearest = there
-        .iter()
-        .max_by(|a, b| depth[**a].total_cmp(&depth[**b]))
-        .expect("a triangle");
+    let elbow = triangles_at(&mapping, 0, stretched()[1]);
+    let (nearest, count) = nearest(&mapping, across()[1]);
+    assert!(count > 1, "elbow and chest");
     let limb = |t: usize| mapping.overlaps.triangle_limb[t];
     assert!(
-        limb(elbow[0]).is_some() && limb(*nearest) == limb(elbow[0]),
+        limb(elbow[0]).is_some() && limb(nearest) == limb(elbow[0]),
         "{:?}",
-        limb(*nearest)
+        limb(nearest)
     );
     // And all of it comes back from its file.
     assert_eq!(
@@ -211,6 +215,78 @@ fn landmarks_lie_on_the_outline_of_one_drawing_and_inside_another() {
     }
 }
 
+/// The layer with its arm named by its hand, and where it begins.
+fn with_named_arm(cut: Option<Vec<Point>>) -> LayerSpec {
+    let mut named = layer();
+    let mut arm = LimbSpec::new("arm", vec![Some(stretched()[2]), Some(across()[2])]);
+    arm.cut[0] = cut;
+    named.limbs.push(arm);
+    named
+}
+
+#[test]
+fn a_limb_is_called_as_the_artist_names_it_and_lies_where_its_order_says() {
+    let is_arm = |mapping: &Mapping, t: usize| {
+        let limb = mapping.overlaps.triangle_limb[t];
+        limb.is_some_and(|limb| mapping.overlaps.limbs[limb].starts_with("arm."))
+    };
+    let mut named = with_named_arm(None);
+    let mapping = mapped(&named);
+    assert!(is_arm(&mapping, nearest(&mapping, across()[1]).0));
+    // The drawing shows it in front; the artist's word counts more.
+    named.limb_orders = vec![Vec::new(), vec!["arm".to_owned(), LimbSpec::TRUNK.to_owned()]];
+    let behind = mapped(&named);
+    let (nearest, count) = nearest(&behind, across()[1]);
+    assert!(count > 1 && !is_arm(&behind, nearest));
+}
+
+#[test]
+fn a_limb_begins_at_its_cut() {
+    let [_, elbow, hand] = stretched();
+    let along = (hand - elbow).normalize();
+    let aside = Point::new(-along.y, along.x) * 30.0;
+    let mapping = mapped(&with_named_arm(Some(vec![elbow - aside, elbow + aside])));
+    let triangles = mapping.poses.topology().triangles();
+    let positions = &mapping.poses.positions()[0];
+    let mut count = 0;
+    for (t, limb) in mapping.overlaps.triangle_limb.iter().enumerate() {
+        if limb.is_some_and(|limb| mapping.overlaps.limbs[limb].starts_with("arm.")) {
+            let middle = triangles[t].iter().map(|v| positions[*v]).sum::<Point>() / 3.0;
+            // About half a spacing of the search's lattice.
+            assert!((middle - elbow).dot(&along) > -6.0, "{middle}");
+            count += 1;
+        }
+    }
+    assert!(count > 5, "{count} triangles");
+}
+
+#[test]
+fn what_is_said_of_limbs_that_cannot_be_names_the_limb_and_the_remedy() {
+    let refusal = |layer: &LayerSpec| map_layer(layer).expect_err("a refusal").to_string();
+    let mut on_belly = with_named_arm(None);
+    on_belly.limbs[0].at[0] = Some(Point::new(150.0, 190.0));
+    let text = refusal(&on_belly);
+    assert!(
+        text.contains("part 'arm'") && text.contains("'stretched'") && text.contains("`cut`"),
+        "{text}"
+    );
+    let mut unknown = with_named_arm(None);
+    unknown.limb_orders = vec![Vec::new(), vec!["arm".to_owned(), "tail".to_owned()]];
+    let text = refusal(&unknown);
+    assert!(
+        text.contains("'tail'") && text.contains("'across'") && text.contains("'arm'"),
+        "{text}"
+    );
+    let mut hidden = with_named_arm(None);
+    hidden.limbs[0].at[0] = None;
+    let text = refusal(&hidden);
+    assert!(text.contains("'stretched'") && text.contains("give it one"), "{text}");
+    let mut refused = with_named_arm(None);
+    refused.overlaps = OverlapSearch::Refuse;
+    let text = refusal(&refused);
+    assert!(text.contains("overlaps"), "{text}");
+}
+
 #[test]
 fn frames_are_painted_from_back_to_front_and_show_what_was_hidden() {
     let places = vec![vec![0.0, 0.0], vec![1.0, 0.0]];
@@ -224,6 +300,13 @@ fn frames_are_painted_from_back_to_front_and_show_what_was_hidden() {
         let p = character.camera().to_pixels(place);
         frame.pixels[p.y as usize * frame.width + p.x as usize]
     };
+    // At the pose that lies over itself there is its drawing, at joints as elsewhere.
+    let alone = character.paint(&character.posed_of(&[0.0, 1.0]).expect("a place"));
+    let drawing = figure(across());
+    let differs = |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 16);
+    let opaque = drawing.picture.pixels.iter().filter(|pixel| pixel[3] > 0).count();
+    let different = alone.pixels.iter().zip(&drawing.picture.pixels).filter(differs).count();
+    assert!(100 * different < opaque, "{different} of {opaque} pixels");
     let is_near = |found: [u8; 4], wanted: [u8; 3]| found.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) < 40);
     let [_, elbow, hand] = across();
     let chest = elbow + (hand - elbow) * 0.2;

@@ -3,7 +3,7 @@
 use inbetween::math::Point;
 use inbetween::scene::Layout;
 use serde_json::Value as Json;
-use toml_edit::{Array, DocumentMut, Item, Table, Value};
+use toml_edit::{Array, DocumentMut, Item, Table, TableLike, Value};
 
 use super::written::{
     from_json, inline, missing, named, names, point_value, push, remove as remove_table, set as set_value, set_numbers,
@@ -109,17 +109,22 @@ pub(super) fn remove(document: &mut DocumentMut, context: &Context<'_>, pose: &s
         place_all(document, context);
     }
     remove_table(document, "pose", index)?;
-    let mut empty = Vec::new();
-    for (k, landmark) in tables(document, "landmark").into_iter().enumerate() {
-        if let Some(at) = landmark.get_mut("at").and_then(Item::as_table_like_mut) {
-            at.remove(pose);
-            if at.is_empty() {
-                empty.push(k);
+    for kind in ["landmark", "part"] {
+        let mut empty = Vec::new();
+        for (k, mark) in tables(document, kind).into_iter().enumerate() {
+            if let Some(cut) = mark.get_mut("cut").and_then(Item::as_table_like_mut) {
+                cut.remove(pose);
+            }
+            if let Some(at) = mark.get_mut("at").and_then(Item::as_table_like_mut) {
+                at.remove(pose);
+                if at.is_empty() {
+                    empty.push(k);
+                }
             }
         }
-    }
-    for k in empty.into_iter().rev() {
-        remove_table(document, "landmark", k)?;
+        for k in empty.into_iter().rev() {
+            remove_table(document, kind, k)?;
+        }
     }
     Ok(())
 }
@@ -140,6 +145,19 @@ pub(super) fn set(document: &mut DocumentMut, pose: &str, key: &str, value: &Jso
     Ok(())
 }
 
+/// Renames a key of a table, whose keys stay in their order.
+fn rename_key(table: &mut dyn TableLike, before: &str, name: &str) {
+    let keys: Vec<String> = table.iter().map(|(key, _)| key.to_owned()).collect();
+    if !keys.iter().any(|key| key == before) {
+        return;
+    }
+    for key in keys {
+        if let Some(item) = table.remove(&key) {
+            table.insert(if key == before { name } else { &key }, item);
+        }
+    }
+}
+
 /// Renames a pose wherever it is named.
 fn rename(document: &mut DocumentMut, pose: &str, name: &str) -> Result<(), Refusal> {
     set_value(named(document, "pose", pose)?, "name", name.into());
@@ -148,16 +166,10 @@ fn rename(document: &mut DocumentMut, pose: &str, name: &str) -> Result<(), Refu
             set_value(table, "deform_of", name.into());
         }
     }
-    for landmark in tables(document, "landmark") {
-        if let Some(at) = landmark.get_mut("at").and_then(Item::as_table_like_mut) {
-            // All are put in again, so that their order stays.
-            let keys: Vec<String> = at.iter().map(|(key, _)| key.to_owned()).collect();
-            if keys.iter().any(|key| key == pose) {
-                for key in keys {
-                    if let Some(item) = at.remove(&key) {
-                        at.insert(if key == pose { name } else { &key }, item);
-                    }
-                }
+    for (kind, key) in [("landmark", "at"), ("part", "at"), ("part", "cut")] {
+        for mark in tables(document, kind) {
+            if let Some(places) = mark.get_mut(key).and_then(Item::as_table_like_mut) {
+                rename_key(places, pose, name);
             }
         }
     }

@@ -96,9 +96,9 @@ pub enum SpecError {
         /// The range in words.
         allowed: &'static str,
     },
-    /// A landmark has a place on a deformed copy.
+    /// A landmark or limb has a place on a deformed copy.
     #[error(
-        "layer '{layer}': landmark '{landmark}' has a place on pose '{pose}', a deformed copy, whose landmarks its mesh carries; remove it, or move a handle there"
+        "layer '{layer}': '{landmark}' has a place on pose '{pose}', a deformed copy, whose landmarks and limbs its mesh carries; remove it, or move a handle there"
     )]
     LandmarkOnCopy {
         /// The layer.
@@ -119,6 +119,34 @@ pub enum SpecError {
         landmark: String,
         /// The pose.
         pose: String,
+    },
+    /// What is said of a limb cannot be.
+    #[error("layer '{layer}': limb '{limb}': {reason}")]
+    BadLimb {
+        /// The layer.
+        layer: String,
+        /// The limb.
+        limb: String,
+        /// What is wrong, and what to do.
+        reason: String,
+    },
+    /// An order of limbs that is none.
+    #[error(
+        "layer '{layer}': the order of limbs in pose '{pose}' must name two or more, each once, from back to front; what belongs to no limb is 'trunk'"
+    )]
+    BadLimbOrder {
+        /// The layer.
+        layer: String,
+        /// The pose.
+        pose: String,
+    },
+    /// Limbs are named, but nothing may lie over anything.
+    #[error(
+        "layer '{layer}': limbs that lie over one another are named, but `overlaps = \"refuse\"` says that there are none; remove one or the other"
+    )]
+    LimbsRefused {
+        /// The layer.
+        layer: String,
     },
     /// The reference is no drawn pose.
     #[error(

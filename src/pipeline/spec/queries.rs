@@ -116,6 +116,12 @@ impl LayerSpec {
         for (path, whole) in layer.paths.iter_mut().zip(&self.paths) {
             path.at = kept.iter().map(|&k| whole.at[k].clone()).collect();
         }
+        for (limb, whole) in layer.limbs.iter_mut().zip(&self.limbs) {
+            limb.at = kept.iter().map(|&k| whole.at[k]).collect();
+            limb.cut = kept.iter().map(|&k| whole.cut[k].clone()).collect();
+        }
+        let order = |&k: &usize| self.limb_orders.get(k).cloned();
+        layer.limb_orders = kept.iter().filter_map(order).collect();
         layer
     }
 
@@ -132,6 +138,20 @@ impl LayerSpec {
             }
         }
         layer.without_empty_marks()
+    }
+
+    /// The layer without anything said of its limbs.
+    #[must_use]
+    pub(in crate::pipeline) fn without_limbs(mut self) -> Self {
+        self.limbs = Vec::new();
+        self.limb_orders = Vec::new();
+        self
+    }
+
+    /// Whether something is said of limbs.
+    #[must_use]
+    pub(in crate::pipeline) fn has_limbs(&self) -> bool {
+        !self.limbs.is_empty() || self.limb_orders.iter().any(|order| !order.is_empty())
     }
 
     /// The layer without landmarks and lines that no pose has.

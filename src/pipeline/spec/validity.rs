@@ -1,6 +1,6 @@
 //! Whether a specification is a character. It is asked once, before anything is built; the stages rely on the answer.
 
-use super::{CharacterSpec, Facing, LayerSpec, Places, PoseShape, SpaceSpec, SpecError};
+use super::{CharacterSpec, Facing, LayerSpec, LimbSpec, OverlapSearch, Places, PoseShape, SpaceSpec, SpecError};
 use crate::math::Point;
 use crate::outline::Ring;
 
@@ -204,6 +204,7 @@ impl LayerSpec {
                 }
             }
         }
+        self.check_limbs()?;
         let count = self.landmarks.len();
         if let Some(point) = self.blend.points().find(|point| *point >= count) {
             return Err(SpecError::UnknownLandmark {
@@ -236,15 +237,75 @@ impl LayerSpec {
         )
     }
 
+    fn check_limbs(&self) -> Result<(), SpecError> {
+        check_names("limb", self.limbs.iter().map(|limb| &limb.name))?;
+        let refused = |limb: &LimbSpec, reason: &str| SpecError::BadLimb {
+            layer: self.name.clone(),
+            limb: limb.name.clone(),
+            reason: reason.to_owned(),
+        };
+        for limb in &self.limbs {
+            if limb.name == LimbSpec::TRUNK {
+                return Err(refused(limb, "that is what belongs to no limb; give it another name"));
+            }
+            let one = |at: &Option<Point>| at.map(|at| vec![at]);
+            let places: Vec<_> = limb.at.iter().map(one).collect();
+            self.check_places("limb", &limb.name, &places)?;
+            self.check_places("limb", &limb.name, &limb.cut)?;
+            if limb.at.iter().all(Option::is_none) {
+                return Err(refused(
+                    limb,
+                    "it has no place; give it one in a drawing that shows it apart",
+                ));
+            }
+            let is_short = |line: &Vec<Point>| line.len() < 2 || line.windows(2).any(|pair| pair[0] == pair[1]);
+            if limb.cut.iter().flatten().any(is_short) {
+                return Err(refused(
+                    limb,
+                    "a cut needs at least two points, successive ones different",
+                ));
+            }
+            if (limb.cut.iter().zip(&limb.at)).any(|(cut, at)| cut.is_some() && at.is_none()) {
+                return Err(refused(
+                    limb,
+                    "it has a cut in a pose that it has no place in; add its place there",
+                ));
+            }
+        }
+        if !self.limb_orders.is_empty() {
+            check_count("the orders of limbs", self.limb_orders.len(), self.poses.len())?;
+        }
+        for (order, pose) in self.limb_orders.iter().zip(&self.poses) {
+            let is_repeated = |(k, name): (usize, &String)| order[..k].contains(name);
+            if order.iter().enumerate().any(is_repeated) || order.len() == 1 {
+                return Err(SpecError::BadLimbOrder {
+                    layer: self.name.clone(),
+                    pose: pose.name.clone(),
+                });
+            }
+        }
+        if self.overlaps == OverlapSearch::Refuse && self.has_limbs() {
+            return Err(SpecError::LimbsRefused {
+                layer: self.name.clone(),
+            });
+        }
+        Ok(())
+    }
+
     fn check_landmark(&self, landmark: &str, at: &[Option<Vec<Point>>]) -> Result<(), SpecError> {
-        let what = || format!("layer '{}': landmark '{landmark}'", self.name);
+        self.check_places("landmark", landmark, at)
+    }
+
+    /// Whether a mark, whose kind is named, has places on drawn poses alone.
+    fn check_places(&self, kind: &str, name: &str, at: &[Option<Vec<Point>>]) -> Result<(), SpecError> {
+        let what = || format!("layer '{}': {kind} '{name}'", self.name);
         check_count(&what(), at.len(), self.poses.len())?;
         for (at, pose) in at.iter().zip(&self.poses) {
             let Some(points) = at else { continue };
             if !matches!(pose.shape, PoseShape::Drawn(_)) {
                 return Err(SpecError::LandmarkOnCopy {
                     layer: self.name.clone(),
-                    landmark: landmark.to_owned(),
+                    landmark: name.to_owned(),
                     pose: pose.name.clone(),
                 });
             }

@@ -16,6 +16,7 @@
 use std::collections::BTreeMap;
 
 use super::chain::{Chain, chains, joints};
+use super::named::Region;
 use crate::math::Point;
 use crate::registration::lattice::Lattice;
 
@@ -59,8 +60,8 @@ pub(super) struct Articulation {
 }
 
 impl Articulation {
-    /// `None` of an empty lattice.
-    pub(super) fn new(lattice: &Lattice) -> Option<Self> {
+    /// `None` of an empty lattice. Each of `parted` is a limb, where the lattice may be cut from the root there.
+    pub(super) fn new(lattice: &Lattice, parted: &[&Region]) -> Option<Self> {
         let depth = lattice.depths();
         let root = (0..depth.len()).max_by(|a, b| depth[*a].total_cmp(&depth[*b]))?;
         let mut making = Making {
@@ -72,7 +73,7 @@ impl Articulation {
             parents: Vec::new(),
             node_of: vec![NONE; depth.len()],
         };
-        let limbs = making.limbs();
+        let limbs = making.limbs(parted);
         making.lay_trunk(&limbs);
         let firsts = making.hang(limbs);
         let Making {
@@ -98,6 +99,12 @@ impl Articulation {
             chain_of,
             depth,
         })
+    }
+
+    /// The number of the limb that a region lies on, among [`Self::ends`]; `None` if it lies on the trunk.
+    pub(super) fn limb_of(&self, region: &Region) -> Option<usize> {
+        let own = self.chain_of[region.vertex];
+        self.ends().iter().position(|line| line.contains(&own))
     }
 
     /// The vertices of a chain.
@@ -172,8 +179,8 @@ struct Making<'a> {
 }
 
 impl Making<'_> {
-    /// The bands of every limb, from its tip on.
-    fn limbs(&self) -> Vec<Vec<Vec<usize>>> {
+    /// The bands of every limb, from its tip on; `parted` ones before all others.
+    fn limbs(&self, parted: &[&Region]) -> Vec<Vec<Vec<usize>>> {
         let count = self.depth.len();
         let from_root = self.lattice.distances_from(&[self.root]);
         let is_core: Vec<bool> = (from_root.iter())
@@ -183,6 +190,16 @@ impl Making<'_> {
         let mut is_taken = vec![false; count];
         let mut distance = from_root;
         let mut limbs = Vec::new();
+        for region in parted {
+            let bands = region.bands(self.lattice, self.band, &is_taken);
+            if bands.is_empty() {
+                continue;
+            }
+            for &v in bands.iter().flatten() {
+                is_taken[v] = true;
+            }
+            limbs.push(bands);
+        }
         while limbs.len() < MOST_LIMBS {
             let free = (0..count).filter(|v| is_tip[*v] && !is_taken[*v] && !is_core[*v] && distance[*v].is_finite());
             let Some(tip) = free.max_by(|a, b| distance[*a].total_cmp(&distance[*b])) else {
@@ -465,7 +482,7 @@ mod tests {
     #[test]
     fn bars_on_a_disc_are_limbs_that_begin_at_it() {
         let lattice = figure(60.0, &BARS, 30.0);
-        let limbs = Articulation::new(&lattice).expect("a figure");
+        let limbs = Articulation::new(&lattice, &[]).expect("a figure");
         let ends: Vec<usize> = (1..limbs.chains.len())
             .filter(|chain| limbs.below(*chain).is_empty())
             .collect();
@@ -486,7 +503,7 @@ mod tests {
     #[test]
     fn a_worm_is_one_chain_from_its_head() {
         let lattice = figure(28.0, &[[[200.0, 200.0], [380.0, 300.0]]], 36.0);
-        let limbs = Articulation::new(&lattice).expect("a figure");
+        let limbs = Articulation::new(&lattice, &[]).expect("a figure");
         let longest = limbs.chains.iter().map(|chain| chain.nodes.len()).max().unwrap_or(0);
         assert!(longest >= 6, "{:?}", limbs.chains);
         assert!(limbs.chains.len() <= 3, "{:?}", limbs.chains);

@@ -19,6 +19,7 @@ mod comparison;
 mod from_tip;
 mod growth;
 mod hypotheses;
+mod named;
 mod order;
 mod pinned;
 mod search;
@@ -28,6 +29,9 @@ use rayon::prelude::*;
 use self::articulation::{Articulation, median};
 use self::comparison::{BARE, Comparison, Layer};
 use self::hypotheses::Search;
+pub use self::named::LimbProblem;
+use self::named::Region;
+pub(crate) use self::named::{NamedLimb, Said, Seen};
 use self::pinned::Pinned;
 use self::search::{Finder, Fine, Put};
 use super::lattice::Lattice;
@@ -75,6 +79,8 @@ pub(super) struct Limbs {
     /// By vertex, the part; numbered from the root on.
     part_of: Vec<usize>,
     parts: usize,
+    /// For each limb that an artist names its number.
+    named: Vec<Result<usize, LimbProblem>>,
     /// The reference at the level [`COMPARED`] and at the one [`ORDERED`].
     compared: ByteImage,
     ordered: ByteImage,
@@ -98,9 +104,14 @@ pub(super) struct Sought {
 }
 
 impl Limbs {
-    /// `None` of an empty lattice.
-    pub(super) fn new(lattice: &Lattice, reference: &Appearance) -> Option<Self> {
-        let articulation = Articulation::new(lattice)?;
+    /// `None` of an empty lattice. Limbs that are `named` in the reference, in working pixels, begin where their names say.
+    pub(super) fn new(lattice: &Lattice, reference: &Appearance, named: &[NamedLimb]) -> Option<Self> {
+        let regions: Vec<Result<Region, LimbProblem>> = named.iter().map(|limb| Region::new(lattice, limb)).collect();
+        let parted: Vec<&Region> = (regions.iter().flatten()).filter(|region| region.is_parted()).collect();
+        let articulation = Articulation::new(lattice, &parted)?;
+        let named = (regions.into_iter())
+            .map(|region| articulation.limb_of(&region?).ok_or(LimbProblem::Trunk))
+            .collect();
         let mut part_of = vec![0; lattice.points.len()];
         let mut parts = 0;
         for chain in &articulation.chains {
@@ -126,6 +137,7 @@ impl Limbs {
             articulation,
             part_of,
             parts,
+            named,
         })
     }
 
@@ -145,21 +157,26 @@ impl Limbs {
         limbs
     }
 
+    /// For each limb that was named its number, as of [`Self::limb_of_parts`].
+    pub(super) fn named(&self) -> &[Result<usize, LimbProblem>] {
+        &self.named
+    }
+
     /// The reference sought in a pose where a registration that began with the outlines has it at `places`, with `residuals` left at every vertex;
-    /// `templates` are those of all levels.
+    /// `templates` are those of all levels, and what is `said` is in working pixels.
     pub(super) fn sought(
         &self,
         pair: &Pair<'_>,
         templates: &[Template],
-        places: &[Point],
-        residuals: &[f32],
+        (places, residuals): (&[Point], &[f32]),
+        said: &Said,
     ) -> Result<Sought, RegistrationError> {
         let lattice = pair.lattice;
         let image = ByteImage::new(&pair.pose.blurred(LEVELS[COMPARED].deviation_px), 0);
         let chains = (&self.articulation.chain_of[..], self.articulation.chains.len());
         let comparison = Comparison::new(lattice, chains, &self.compared, &image);
         let layers = comparison.layers(places);
-        let pinned = Pinned::new(pair, &self.articulation);
+        let pinned = Pinned::new(pair, &self.articulation, &said.seen);
         let looks = comparison.energy(&layers);
         // A beginning that explains nothing says nothing of the size, either: drawings of a character are as large as one another in their own units.
         let scale = if looks > HOPELESS {
@@ -229,16 +246,17 @@ impl Limbs {
                 templates,
                 &sought.is_hidden,
             )?;
-            self.put_in_order(lattice, &in_order, &mut sought);
+            self.put_in_order(lattice, &in_order, said, &mut sought);
         }
         sought.energies[1] = finder.put(sought.places.clone()).energy;
         Ok(sought)
     }
 
     /// Finds what lies in front, and what is hidden by it.
-    fn put_in_order(&self, lattice: &Lattice, comparison: &Comparison<'_>, sought: &mut Sought) {
+    fn put_in_order(&self, lattice: &Lattice, comparison: &Comparison<'_>, said: &Said, sought: &mut Sought) {
         let layers = comparison.layers(&sought.places);
-        sought.ranks = order::ranks(&layers);
+        let in_front = said.in_front(&self.limb_of_parts(), &layers, comparison);
+        sought.ranks = order::ranks(&layers, &in_front);
         let front = front(&layers, &sought.ranks);
         sought.is_hidden = (sought.places.iter().enumerate())
             .map(|(v, place)| {

@@ -3,20 +3,27 @@
 //! Parts where they are in a pose -> by part, its rank from back to front.
 //!
 //! 1. Where two parts lie on the same cells, the one whose drawing is seen differs less: the sum of what the other differs more is the evidence.
-//! 2. The order that contradicts the least evidence: parts are moved to where they contradict less until none is better elsewhere. Where nothing
+//! 2. What an artist says of two parts outweighs everything that is seen.
+//! 3. The order that contradicts the least evidence: parts are moved to where they contradict less until none is better elsewhere. Where nothing
 //!    overlaps, parts stay in the order of their numbers.
 
 use super::comparison::{BARE, Layer};
 
 /// A difference between two differences counts for no more than this, in steps: one stray line is no evidence.
 const MOST_EVIDENCE: i32 = 50;
+/// What an artist says is worth this much: more than all cells of a picture.
+const SAID: i64 = 1 << 40;
 /// Moves of all parts at most.
 const ROUNDS: usize = 20;
 
-/// By part, its rank, the nearest the largest.
-pub(super) fn ranks(layers: &[Layer]) -> Vec<usize> {
-    let evidence = evidence(layers);
+/// By part, its rank, the nearest the largest. Of each pair of `in_front` the first is said to lie in front of the second.
+pub(super) fn ranks(layers: &[Layer], in_front: &[[usize; 2]]) -> Vec<usize> {
+    let mut evidence = evidence(layers);
     let count = layers.len();
+    for &[front, back] in in_front {
+        evidence[front * count + back] += SAID;
+        evidence[back * count + front] -= SAID;
+    }
     let mut order: Vec<usize> = (0..count).collect();
     for _ in 0..ROUNDS {
         let mut has_moved = false;
@@ -78,8 +85,11 @@ mod tests {
         let wide = vec![30, 30, 30, 30, 2];
         let left = vec![5, 5, BARE, BARE, BARE];
         let right = vec![BARE, 40, 4, 4, BARE];
-        let ranks = ranks(&[left, wide.clone(), right]);
-        assert!(ranks[0] > ranks[2] && ranks[2] > ranks[1], "{ranks:?}");
-        assert_eq!(super::ranks(&[wide.clone(), wide]), [0, 1]);
+        let layers = [left, wide.clone(), right];
+        let as_seen = ranks(&layers, &[]);
+        assert!(as_seen[0] > as_seen[2] && as_seen[2] > as_seen[1], "{as_seen:?}");
+        let as_said = ranks(&layers, &[[1, 0], [1, 2]]);
+        assert!(as_said[1] > as_said[0] && as_said[0] > as_said[2], "{as_said:?}");
+        assert_eq!(ranks(&[wide.clone(), wide], &[]), [0, 1]);
     }
 }

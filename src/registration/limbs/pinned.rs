@@ -4,11 +4,13 @@
 //! there, whatever else looks like it.
 
 use super::articulation::Articulation;
+use super::named::Seen;
 use crate::math::Point;
 use crate::registration::pair::Pair;
 
-/// A pin is met within one spacing, and missed altogether this many further away.
+/// A pin is met within one spacing, one on a limb that is only seen about there within several, and missed altogether this many further away.
 const MET: f64 = 1.0;
+const ABOUT: f64 = 4.0;
 const MISSED: f64 = 3.0;
 /// What a missed pin costs a vertex of its band, of [`MOST_DIFFERENCE`](crate::registration::template::MOST_DIFFERENCE) that a wrong picture costs.
 const BAND_COST: f64 = 0.6;
@@ -30,6 +32,8 @@ struct Fastened {
     vertex: usize,
     aside: Point,
     to: Point,
+    /// Within how many spacings it is met.
+    met: f64,
 }
 
 impl Fastened {
@@ -40,19 +44,22 @@ impl Fastened {
 }
 
 impl Pinned {
-    pub(super) fn new(pair: &Pair<'_>, limbs: &Articulation) -> Self {
+    /// Those of the pair, and where limbs are seen, in working pixels.
+    pub(super) fn new(pair: &Pair<'_>, limbs: &Articulation, seen: &[Seen]) -> Self {
         let mut pinned = Self {
             pins: Vec::new(),
             of_node: vec![Vec::new(); limbs.nodes.len()],
             spacing: pair.lattice.spacing,
         };
-        for pin in &pair.pins {
-            if let Some((vertex, _)) = pair.lattice.cell_at(pin.from) {
+        let pins = pair.pins.iter().map(|pin| (pin.from, pin.to, MET));
+        for (from, to, met) in pins.chain(seen.iter().map(|seen| (seen.from, seen.to, ABOUT))) {
+            if let Some((vertex, _)) = pair.lattice.cell_at(from) {
                 pinned.of_node[limbs.node_of[vertex]].push(pinned.pins.len());
                 pinned.pins.push(Fastened {
                     vertex,
-                    aside: pin.from - pair.lattice.points[vertex],
-                    to: pin.to,
+                    aside: from - pair.lattice.points[vertex],
+                    to,
+                    met,
                 });
             }
         }
@@ -67,13 +74,13 @@ impl Pinned {
     /// What a band costs a vertex whose pins are put by `place`, which has where a place of the reference goes; `points` are the reference's vertices.
     pub(super) fn of_band(&self, node: usize, points: &[Point], place: impl Fn(Point) -> Point) -> f64 {
         let pins = self.of_node[node].iter().map(|pin| &self.pins[*pin]);
-        pins.map(|pin| BAND_COST * self.missed(place(points[pin.vertex] + pin.aside), pin.to))
+        pins.map(|pin| BAND_COST * self.missed(pin, place(points[pin.vertex] + pin.aside)))
             .sum()
     }
 
     /// What a figure costs whose vertices are at `places`, `scale` times as large as the reference.
     pub(super) fn of_figure(&self, places: &[Point], scale: f64) -> f64 {
-        let missed = |pin: &Fastened| self.missed(pin.put(places, scale), pin.to);
+        let missed = |pin: &Fastened| self.missed(pin, pin.put(places, scale));
         FIGURE_COST * self.pins.iter().map(missed).sum::<f64>()
     }
 
@@ -83,11 +90,11 @@ impl Pinned {
             .iter()
             .flat_map(|node| &self.of_node[*node])
             .map(|pin| &self.pins[*pin]);
-        pins.all(|pin| self.missed(pin.put(places, scale), pin.to) <= 0.0)
+        pins.all(|pin| self.missed(pin, pin.put(places, scale)) <= 0.0)
     }
 
-    /// How badly a place misses `to`, from 0 to 1.
-    fn missed(&self, place: Point, to: Point) -> f64 {
-        (((place - to).norm() / self.spacing - MET) / MISSED).clamp(0.0, 1.0)
+    /// How badly a pin that is put at a place is missed, from 0 to 1.
+    fn missed(&self, pin: &Fastened, place: Point) -> f64 {
+        (((place - pin.to).norm() / self.spacing - pin.met) / MISSED).clamp(0.0, 1.0)
     }
 }

@@ -29,36 +29,46 @@ impl Reader<'_> {
                 return Err(self.fail(start, SceneProblem::BadName { kind: "landmark", name }));
             }
             let line = self.line(start);
-            let layer = match &written.layer {
-                Some(layer) => Some(self.layer_index(layer, &format!("landmark '{name}'"), layers)?),
-                None if layers.is_empty() => None,
-                None => {
-                    return Err(self.fail(
-                        start,
-                        SceneProblem::Format(format!(
-                            "landmark '{name}' does not say which layer it is on; add `layer = \"{}\"`",
-                            layers.join("\"` or `layer = \"")
-                        )),
-                    ));
-                }
-            };
+            let owner = format!("landmark '{name}'");
+            let layer = self.layer_of(start, written.layer.as_ref(), &owner, layers)?;
             if written.path.as_ref().is_some_and(|path| *path.get_ref()) {
-                let at = self.on_poses(&written.at, &name, names, |value, key| self.polyline(value, key))?;
+                let at = self.on_poses(&written.at, &owner, names, |value, key| self.polyline(value, key))?;
                 paths.push(ScenePath { name, line, layer, at });
             } else {
                 let point = |value: &Spanned<Value>, key: &str| self.point(value.get_ref(), value.span().start, key);
-                let at = self.on_poses(&written.at, &name, names, point)?;
+                let at = self.on_poses(&written.at, &owner, names, point)?;
                 landmarks.push(SceneLandmark { name, line, layer, at });
             }
         }
         Ok((landmarks, paths))
     }
 
-    /// What a landmark says of each pose.
-    fn on_poses<T: Clone>(
+    /// The layer that something is on which starts at `start`; `None` in a scene without layers.
+    pub(super) fn layer_of(
+        &self,
+        start: usize,
+        written: Option<&Spanned<String>>,
+        owner: &str,
+        layers: &[String],
+    ) -> Checked<Option<usize>> {
+        match written {
+            Some(layer) => Ok(Some(self.layer_index(layer, owner, layers)?)),
+            None if layers.is_empty() => Ok(None),
+            None => Err(self.fail(
+                start,
+                SceneProblem::Format(format!(
+                    "{owner} does not say which layer it is on; add `layer = \"{}\"`",
+                    layers.join("\"` or `layer = \"")
+                )),
+            )),
+        }
+    }
+
+    /// What a landmark or a part says of each pose.
+    pub(super) fn on_poses<T: Clone>(
         &self,
         written: &BTreeMap<String, Spanned<Value>>,
-        name: &str,
+        owner: &str,
         names: &[&str],
         read: impl Fn(&Spanned<Value>, &str) -> Checked<T>,
     ) -> Checked<Vec<Option<T>>> {
@@ -68,14 +78,14 @@ impl Reader<'_> {
             let index = names
                 .iter()
                 .position(|n| n == pose)
-                .ok_or_else(|| self.fail(place, unknown_pose(pose, &format!("landmark '{name}'"), names)))?;
-            at[index] = Some(read(value, &format!("landmark '{name}' on pose '{pose}'"))?);
+                .ok_or_else(|| self.fail(place, unknown_pose(pose, owner, names)))?;
+            at[index] = Some(read(value, &format!("{owner} on pose '{pose}'"))?);
         }
         Ok(at)
     }
 
     /// A line of two points or more; repeated points are merged.
-    fn polyline(&self, value: &Spanned<Value>, key: &str) -> Checked<Vec<Point>> {
+    pub(super) fn polyline(&self, value: &Spanned<Value>, key: &str) -> Checked<Vec<Point>> {
         let start = value.span().start;
         let mut points: Vec<Point> = Vec::new();
         for (k, point) in value

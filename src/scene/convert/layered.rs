@@ -31,13 +31,9 @@ impl Reader<'_> {
             return Ok(());
         }
         for pose in written.pose.iter().map(Spanned::get_ref) {
-            let used_by = |what: &str| format!("{what} of pose '{}'", pose.name.get_ref());
-            for name in pose.order.as_ref().map(Spanned::get_ref).into_iter().flatten() {
-                self.layer_index(name, &used_by("`order`"), layers)?;
-            }
             for handle in pose.handles.as_ref().map(Spanned::get_ref).into_iter().flatten() {
                 if let Some(name) = &handle.layer {
-                    self.layer_index(name, &used_by("a handle"), layers)?;
+                    self.layer_index(name, &format!("a handle of pose '{}'", pose.name.get_ref()), layers)?;
                 }
             }
         }

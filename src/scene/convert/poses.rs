@@ -105,6 +105,7 @@ impl Reader<'_> {
             at,
             turns: turns as i32,
             draw_order: Vec::new(),
+            limb_order: self.limb_order(written, layers)?,
         })
     }
 

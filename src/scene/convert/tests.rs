@@ -131,6 +131,40 @@ fn a_landmark_with_a_path_is_a_line_on_every_pose_that_has_it() {
 }
 
 #[test]
+fn parts_have_places_a_cut_and_an_order() {
+    let part = |keys: &str| format!("{TWO}[[part]]\nname = \"arm\"\n{keys}\n");
+    let scene = parse(&part(
+        "at = { a = [1, 2], b = [3, 4.5] }\ncut = { a = [[0, 0], [2, 0]] }",
+    ))
+    .expect("a scene");
+    let arm = &scene.limbs[0];
+    assert_eq!((arm.name.as_str(), arm.line, arm.layer), ("arm", 11, None));
+    assert_eq!(arm.at, vec![Some(Point::new(1.0, 2.0)), Some(Point::new(3.0, 4.5))]);
+    assert_eq!(arm.cut[0], Some([[0.0, 0.0], [2.0, 0.0]].map(Point::from).to_vec()));
+    for (keys, word) in [
+        ("at = { c = [1, 2] }", "'c'"),
+        ("at = { a = [1] }", "point"),
+        ("at = { a = [1, 2] }\ncut = { a = [[1, 2]] }", "two different points"),
+        ("at = { a = [1, 2] }\nlayer = \"body\"", "[[layer]]"),
+    ] {
+        let (_, message) = refused(&part(keys));
+        assert!(message.contains("part 'arm'") && message.contains(word), "{message}");
+    }
+    let (line, message) = refused(&format!("{TWO}[[part]]\nname = \"trunk\"\nat = {{ a = [1, 2] }}\n"));
+    assert!(line == Some(11) && message.contains("'trunk'"), "{message}");
+    let ordered = |order: &str| {
+        let pose = "[[pose]]\nname = \"c\"\nsource = \"c.png\"\nat = [2, 0]\n";
+        format!("{TWO}{pose}order = {order}\n")
+    };
+    let scene = parse(&ordered("[\"arm\", \"trunk\"]")).expect("a scene");
+    assert_eq!(scene.poses[2].limb_order, ["arm", "trunk"]);
+    for order in ["[\"arm\"]", "[\"arm\", \"arm\"]"] {
+        let (line, message) = refused(&ordered(order));
+        assert!(line == Some(14) && message.contains("'c'"), "{message}");
+    }
+}
+
+#[test]
 fn unknown_keys_are_refused_with_their_line() {
     let (line, message) = refused("version = 1\n[mesh]\nsimplfy = 0.1\n");
     assert_eq!(line, Some(3));
