@@ -1,4 +1,7 @@
-//! The mesh on every pose, and what corresponds inside: a chequered colour wheel on the reference, carried to the others.
+//! The mesh on every pose, and what corresponds inside: a chequered colour wheel on the reference, carried to the others. Where a pose lies over itself, it is
+//! drawn from back to front, its limbs with their edges and names.
+
+use std::collections::BTreeMap;
 
 use tiny_skia::Color;
 
@@ -7,7 +10,7 @@ use super::layout::Cell;
 use super::{Diagram, INK, TEXT_PX, hue, mark_size, worst_colour};
 use crate::math::{Point, Point3, point};
 use crate::mesh::geometry;
-use crate::pose::LandmarkKind;
+use crate::pose::{LandmarkKind, Mapping};
 
 /// How many of a pose's triangles are marked: one in so many, but not fewer or more than these.
 const MARKED_SHARE: usize = 100;
@@ -17,6 +20,8 @@ const MARKED: (usize, usize) = (3, 8);
 const PIECES: usize = 3;
 /// Squares of the chequer along the reference's diagonal.
 const SQUARES: f64 = 24.0;
+/// The height of the names of limbs, of a line of text.
+const LIMB_SHARE: f64 = 0.8;
 /// The lightness of its squares, in turn.
 const LIGHTNESS: [f64; 2] = [0.58, 0.9];
 
@@ -27,26 +32,24 @@ pub(super) fn draw(canvas: &mut Canvas, diagram: &Diagram, cells: &[Cell]) {
     let wheel = Wheel::new(&mapping.poses.positions()[mapping.matching.reference]);
     for (pose, (positions, cell)) in mapping.poses.positions().iter().zip(cells).enumerate() {
         let placed: Vec<Point> = positions.iter().map(|p| cell.fit.place(*p)).collect();
-        for corners in triangles {
-            let on_reference = geometry::corners(wheel.reference, *corners);
-            let here = geometry::corners(&placed, *corners);
-            for weights in pieces() {
-                let middle = (weights[0] + weights[1] + weights[2]) / 3.0;
-                let colour = wheel.colour(at(&on_reference, middle));
-                let [a, b, c] = weights.map(|w| at(&here, w));
-                canvas.fill(&[a, b, c], colour);
-                // Over the seams that smooth edges leave.
-                canvas.line(&[a, b, c, a], 0.8, colour);
+        match mapping.overlaps.depth(pose) {
+            Some(depth) => draw_from_back_to_front(canvas, mapping, &wheel, &placed, depth),
+            None => {
+                for corners in triangles {
+                    wheel.fill(canvas, &placed, *corners);
+                }
+                for corners in triangles {
+                    draw_edges(canvas, geometry::corners(&placed, *corners));
+                }
+                for ring in &mapping.rings {
+                    let mut points: Vec<Point> = ring.iter().map(|v| placed[*v]).collect();
+                    points.extend(points.first().copied());
+                    canvas.line(&points, 1.4, INK);
+                }
             }
         }
-        for corners in triangles {
-            let [a, b, c] = geometry::corners(&placed, *corners);
-            canvas.line(&[a, b, c, a], 0.6, Color::from_rgba8(90, 90, 90, 150));
-        }
-        for ring in &mapping.rings {
-            let mut points: Vec<Point> = ring.iter().map(|v| placed[*v]).collect();
-            points.extend(points.first().copied());
-            canvas.line(&points, 1.4, INK);
+        if !mapping.overlaps.is_empty() {
+            name_limbs(canvas, mapping, &placed);
         }
         let worst = smallest_angles(positions, triangles);
         for (k, _) in &worst {
@@ -73,6 +76,54 @@ pub(super) fn draw(canvas: &mut Canvas, diagram: &Diagram, cells: &[Cell]) {
     }
 }
 
+fn draw_edges(canvas: &mut Canvas, [a, b, c]: [Point; 3]) {
+    canvas.line(&[a, b, c, a], 0.6, Color::from_rgba8(90, 90, 90, 150));
+}
+
+/// A mesh that lies over itself: what is nearer hides what lies behind it, lines and all.
+fn draw_from_back_to_front(canvas: &mut Canvas, mapping: &Mapping, wheel: &Wheel<'_>, placed: &[Point], depth: &[f64]) {
+    let topology = mapping.poses.topology();
+    let triangles = topology.triangles();
+    let around = topology.neighbours();
+    let limb = |t: usize| limb_name(mapping, t);
+    let mut order: Vec<usize> = (0..triangles.len()).collect();
+    order.sort_by(|a, b| depth[*a].total_cmp(&depth[*b]));
+    for t in order {
+        let corners = geometry::corners(placed, triangles[t]);
+        wheel.fill(canvas, placed, triangles[t]);
+        draw_edges(canvas, corners);
+        for (k, other) in around[t].iter().enumerate() {
+            if other.is_none_or(|other| limb(other) != limb(t)) {
+                canvas.line(&[corners[k], corners[(k + 1) % 3]], 1.4, INK);
+            }
+        }
+    }
+}
+
+/// The name of the limb that a triangle belongs to, whose parts have numbers behind a point.
+fn limb_name(mapping: &Mapping, triangle: usize) -> Option<&str> {
+    let limb = (*mapping.overlaps.triangle_limb.get(triangle)?)?;
+    let name = mapping.overlaps.limbs.get(limb)?;
+    Some(name.rsplit_once('.').map_or(name.as_str(), |(name, _)| name))
+}
+
+/// Writes the name of every limb in its middle.
+fn name_limbs(canvas: &mut Canvas, mapping: &Mapping, placed: &[Point]) {
+    let triangles = mapping.poses.topology().triangles();
+    let mut middles: BTreeMap<&str, (Point, usize)> = BTreeMap::new();
+    for (t, corners) in triangles.iter().enumerate() {
+        if let Some(name) = limb_name(mapping, t) {
+            let [a, b, c] = geometry::corners(placed, *corners);
+            let (sum, count) = middles.entry(name).or_insert((Point::zeros(), 0));
+            *sum += (a + b + c) / 3.0;
+            *count += 1;
+        }
+    }
+    for (name, (sum, count)) in middles {
+        canvas.text_around(name, sum / count as f64, LIMB_SHARE * TEXT_PX, INK);
+    }
+}
+
 /// A colour for every place of the reference.
 struct Wheel<'a> {
     reference: &'a [Point],
@@ -86,6 +137,20 @@ impl<'a> Wheel<'a> {
             reference,
             middle: reference.iter().sum::<Point>() / reference.len().max(1) as f64,
             square: point::diagonal(reference) / SQUARES,
+        }
+    }
+
+    /// Fills a triangle of a pose with the colours that it has on the reference.
+    fn fill(&self, canvas: &mut Canvas, placed: &[Point], triangle: [usize; 3]) {
+        let on_reference = geometry::corners(self.reference, triangle);
+        let here = geometry::corners(placed, triangle);
+        for weights in pieces() {
+            let middle = (weights[0] + weights[1] + weights[2]) / 3.0;
+            let colour = self.colour(at(&on_reference, middle));
+            let [a, b, c] = weights.map(|w| at(&here, w));
+            canvas.fill(&[a, b, c], colour);
+            // Over the seams that smooth edges leave.
+            canvas.line(&[a, b, c, a], 0.8, colour);
         }
     }
 

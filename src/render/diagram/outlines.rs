@@ -5,7 +5,7 @@ use tiny_skia::Color;
 use super::canvas::Canvas;
 use super::labels::{Area, LEADER_PX, Labels, Need};
 use super::layout::Cell;
-use super::{Diagram, INK, Sections, cost_colour, faint, hue, mark_size};
+use super::{Diagram, INK, Sections, TEXT_PX, cost_colour, faint, hue, mark_size};
 use crate::math::{Point, point, wrapped};
 use crate::outline::ArcLength;
 use crate::pose::{LandmarkKind, PlacedLandmark};
@@ -79,10 +79,14 @@ pub(super) fn draw(canvas: &mut Canvas, diagram: &Diagram, sections: &Sections, 
         })
         .collect();
     let share = |k: usize| k as f64 / sections.links().len().max(1) as f64;
+    let lies_over_itself = |pose: usize| diagram.mapping.overlaps.depth(pose).is_some();
     for (k, link) in sections.links().iter().enumerate() {
-        let places: Vec<Point> = placed.iter().zip(&link.at).map(|(pose, t)| pose.at(*t)).collect();
+        let places: Vec<Option<Point>> = (placed.iter().zip(&link.at).enumerate())
+            .map(|(pose, (on, t))| (!lies_over_itself(pose)).then(|| on.at(*t)))
+            .collect();
         for row in places.chunks(columns.max(1)) {
-            canvas.line(row, 0.8, faint(hue(share(k), 0.62)));
+            let row: Vec<Point> = row.iter().flatten().copied().collect();
+            canvas.line(&row, 0.8, faint(hue(share(k), 0.62)));
         }
     }
     for landmark in on_rims(diagram) {
@@ -101,6 +105,20 @@ pub(super) fn draw(canvas: &mut Canvas, diagram: &Diagram, sections: &Sections, 
             labels.avoid(&[here.at(4.0 * k as f64 / SAMPLES)]);
         }
         draw_landmarks(canvas, diagram, here, pose, &mut labels);
+        if lies_over_itself(pose) {
+            let words = "PARTS LIE OVER ONE ANOTHER";
+            canvas.text_around(words, here.cell.foot(), 0.9 * TEXT_PX, INK);
+            draw_names(
+                &mut Pen {
+                    canvas,
+                    labels: &mut labels,
+                },
+                diagram,
+                here,
+                pose,
+            );
+            continue;
+        }
         for (k, link) in sections.links().iter().enumerate() {
             let place = here.at(link.at[pose]);
             if link.landmark.is_none() {
@@ -162,7 +180,7 @@ fn draw_landmarks(canvas: &mut Canvas, diagram: &Diagram, here: &Placed, pose: u
     }
 }
 
-/// Numbers; the doubtful sections; names, where there is room.
+/// Numbers; the doubtful sections; names.
 fn draw_labels(
     canvas: &mut Canvas,
     diagram: &Diagram,
@@ -197,6 +215,11 @@ fn draw_labels(
         let (place, outward) = (here.at(middle), here.outward(middle));
         pen.label(&words, place, outward, cost_colour(f64::INFINITY), Need::Must);
     }
+    draw_names(&mut pen, diagram, here, pose);
+}
+
+/// The names of landmarks, where there is room.
+fn draw_names(pen: &mut Pen<'_>, diagram: &Diagram, here: &Placed, pose: usize) {
     for landmark in diagram.landmarks {
         let places = &landmark.at[pose];
         let Some(middle) = places.get(places.len() / 2).map(|p| here.cell.fit.place(*p)) else {

@@ -4,6 +4,7 @@
 //!
 //! 1. Links: the landmarks on the outline; the reference's salient points, those of the widest scale first, unless too near
 //!    to one that is there; and the middles of the widest gaps.
+//!    Poses that lie over themselves have none: part of their outline is hidden, and there is nothing to compare.
 //! 2. The cost of a section is the mean of the match's mismatch between two links, over the length it has on average
 //!    on both outlines. The reference has no mismatch of its own: it shows the largest of the others.
 //!
@@ -101,6 +102,10 @@ impl Sections {
             .map(|link| matching.outer.row_coordinate(reference, link.at[reference]))
             .collect();
         let of_pose = |pose: usize| -> Vec<f64> {
+            // Where parts lie over one another, outlines do not correspond.
+            if mapping.overlaps.depth(pose).is_some() {
+                return vec![0.0; rows.len()];
+            }
             let mismatch = report.poses.get(pose).map_or(&[][..], |matched| &matched.mismatch);
             let between = |k: usize| (rows[k], rows[(k + 1) % rows.len()]);
             (0..rows.len())
