@@ -25,7 +25,7 @@ Examples:
   inbetween add walker/scene.toml sneak.png --at 0.5,-0.8")]
 pub(crate) struct Arguments {
     /// The scene file
-    scene: PathBuf,
+    pub(super) scene: PathBuf,
     /// The drawing: PNG, JPEG, WebP, GIF, BMP, TIFF or SVG
     drawing: PathBuf,
     /// Its place in the pose space: X,Y or as many numbers as it has dimensions; found if none is given

@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     certify: bool,
     /// The blended frame, or - for standard output
     #[arg(short, long, value_name = "FRAME.json")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
 }
 
 #[derive(Serialize)]

@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     weights: Option<Numbers>,
     /// The picture, a .png or .svg file, or - for a PNG on standard output
     #[arg(short, long, value_name = "OUT")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
     /// Columns and rows, such as 1920x1080; the scene's otherwise
     #[arg(long, value_name = "WxH")]
     size: Option<Grid>,

@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     scene: PathBuf,
     /// The mapping, or - for standard output
     #[arg(short, long, value_name = "MAPPING.json")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
     /// The layer, in a scene with layers
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
@@ -46,7 +46,8 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     let observed = map_layer_observed(&layer, &mut |stage| clock.begins(stage));
     clock.stop();
     let (mapping, report) = observed.map_err(|error| scene.refusal(error))?;
-    verbosity.notes(notes.into_iter().chain(report.notes.iter().map(ToString::to_string)));
+    verbosity.notes(notes);
+    verbosity.notes(&report.notes);
     let is_one_of_several = arguments.layer.is_some() || outlines.iter().any(|parts| parts.len() > 1);
     output.write(
         mapping

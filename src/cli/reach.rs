@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     handle: Vec<Handle>,
     /// A file, or - for standard output
     #[arg(short, long, value_name = "OUT", default_value = "-")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
 }
 
 /// `NAME=X,Y`.

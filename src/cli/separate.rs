@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
     scene: PathBuf,
     /// The folder of the new scene; made if it does not exist
     #[arg(short, long, value_name = "DIR")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
     /// Write over the files of an earlier run
     #[arg(long)]
     force: bool,

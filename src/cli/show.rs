@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     scene: PathBuf,
     /// The picture, a .png file, or - for standard output
     #[arg(short, long, value_name = "OUT.png")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
     /// The layer, in a scene with layers
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
@@ -40,7 +40,8 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     let in_scene = || scene.file.display().to_string();
     let provider = scene.weights(None)?;
     let (mapping, report) = map_layer(&layer).map_err(|error| scene.refusal(error))?;
-    verbosity.notes(notes.into_iter().chain(report.notes.iter().map(ToString::to_string)));
+    verbosity.notes(notes);
+    verbosity.notes(&report.notes);
     let poses: Vec<DiagramPose> = scene
         .poses
         .iter()

@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
     polygons: PathBuf,
     /// The mapping, or - for standard output
     #[arg(short, long, value_name = "MAPPING.json")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
     /// Add vertices inside for better triangles
     #[arg(long)]
     refine: bool,

@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     provider: Option<String>,
     /// A file, or - for standard output
     #[arg(short, long, value_name = "OUT", default_value = "-")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
 }
 
 #[derive(Serialize)]

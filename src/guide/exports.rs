@@ -62,4 +62,23 @@
 //! needs. The repository's folder `farm` has a template in the Open Job Description and a script for Slurm. `--progress json` tells progress
 //! to programs. The exit code is 0 when everything is written, 1 for bad input, failed work or a certificate that does not hold, and 2 for wrong usage.
 //!
+//! # From programs
+//!
+//! With `--json` every verb ends with one object on the last line of standard error, whatever else it prints; `--quiet` leaves the rest out but for errors.
+//!
+//! ```json
+//! {
+//!   "verb": "map", "done": false, "made": [], "said": [],
+//!   "notes": [ { "kind": "looks-reflected", "pose": "run", "text": "pose 'run' would match better ..." } ],
+//!   "error": {
+//!     "kind": "landmark-off-outline", "file": "cat/scene.toml", "line": 14, "pose": "stand", "landmark": "nose", "place": [120.5, 40.0],
+//!     "text": "cat/scene.toml:14: landmark 'nose': ...", "remedy": "move (120.5, 40.0) onto the outline, ..."
+//!   }
+//! }
+//! ```
+//!
+//! `made` names the file or folder that was made, `said` has the lines that say what was done. `error` is `null` if `done` is true. Of a note or an error, `kind` is the name of the library's
+//! variant ([`NoteKind`](crate::pipeline::NoteKind), [`PipelineError`](crate::pipeline::PipelineError)) in small letters, `usage` for a wrong command line, `io` for what the system refuses, and
+//! `other`; what is not known is left out. Places are those of the pose's drawing.
+//!
 //! The next chapter: [`explorer`](super::explorer).

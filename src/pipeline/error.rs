@@ -425,6 +425,19 @@ impl PipelineError {
         }
     }
 
+    /// The place that it is about, on its pose's drawing, where one is known.
+    #[must_use]
+    pub fn place(&self) -> Option<Point> {
+        match self.within_layer() {
+            Self::LandmarkOffOutline { x, y, .. } | Self::LandmarkPlaces { x, y, .. } => Some(Point::new(*x, *y)),
+            Self::Overlap { misfit, .. } => match misfit {
+                OverlapMisfit::Cover { at, .. } | OverlapMisfit::Mark { at } => Some(*at),
+                OverlapMisfit::Fold => None,
+            },
+            _ => None,
+        }
+    }
+
     /// The pose that it is about, where one is named.
     #[must_use]
     pub fn pose(&self) -> Option<&str> {

@@ -1,5 +1,6 @@
 //! The tests that use the library and the command from outside, as one program: it is linked once.
 
+mod answers;
 mod bad_input;
 mod canvas;
 mod carried_drawings;

@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
     scene: PathBuf,
     /// A folder, or a file whose ending says what it is
     #[arg(short, long, value_name = "OUT")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
     /// The kind of output, where the name does not say: png (a folder), sprites (a .png with a .json beside it), gif,
     /// apng, webp, mp4, webm, svg, svg-sequence (a folder), lottie, glb, spine (a folder, or a .json with its pictures
     /// beside it) or runtime

@@ -4,6 +4,8 @@ mod format;
 mod render;
 mod weights;
 
+use std::path::Path;
+
 use clap::Subcommand;
 
 use super::{Failure, Verbosity};
@@ -27,6 +29,16 @@ pub(crate) struct Arguments {
 enum Verb {
     Render(render::Arguments),
     Weights(weights::Arguments),
+}
+
+impl Arguments {
+    /// The file or folder that is made.
+    pub(super) fn output(&self) -> &Path {
+        match &self.verb {
+            Verb::Render(verb) => &verb.output,
+            Verb::Weights(verb) => &verb.output,
+        }
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Failure> {

@@ -44,7 +44,7 @@ pub(super) struct Arguments {
     scene: PathBuf,
     /// A folder, or a file whose ending says what it is
     #[arg(short, long, value_name = "OUT")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
     /// The kind of output, where the name does not say: obj, glb, sheet (the contact sheet) or png (shaded pictures)
     #[arg(long, value_name = "FORMAT")]
     format: Option<String>,

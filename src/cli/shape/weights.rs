@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     texture_at: Vec<Numbers>,
     /// A file, or - for standard output
     #[arg(short, long, value_name = "OUT", default_value = "-")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
 }
 
 #[derive(Serialize)]
