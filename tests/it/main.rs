@@ -19,6 +19,7 @@ mod layered;
 mod layers;
 mod long_work;
 mod mapping_report;
+mod overlap_exports;
 mod overlaps;
 mod parts;
 mod rims;

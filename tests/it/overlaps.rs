@@ -9,14 +9,14 @@ use inbetween::pipeline::{OverlapSearch, map_layer};
 use inbetween::pose::Mapping;
 use inbetween::{Character, CharacterSpec, Drawing, LayerSpec, PoseSpec, read_pixels};
 
-const SIZE: [usize; 2] = [360, 360];
+pub(crate) const SIZE: [usize; 2] = [360, 360];
 /// Half the width of the lines, in pixels.
 const LINE: f64 = 2.0;
 
 const INK: [u8; 3] = [30, 25, 40];
 const SKIN: [u8; 3] = [240, 200, 170];
-const SHIRT: [u8; 3] = [60, 110, 200];
-const SLEEVE: [u8; 3] = [200, 60, 50];
+pub(crate) const SHIRT: [u8; 3] = [60, 110, 200];
+pub(crate) const SLEEVE: [u8; 3] = [200, 60, 50];
 const HAND: [u8; 3] = [250, 210, 60];
 const TROUSERS: [u8; 3] = [70, 120, 70];
 const WHITE: [u8; 3] = [250, 250, 250];
@@ -31,20 +31,25 @@ fn capsule(p: Point, a: Point, b: Point, radius: f64) -> f64 {
 const ARM: f64 = 11.0;
 
 /// The joints of an arm: shoulder, elbow, hand.
-type Arm = [Point; 3];
+pub(crate) type Arm = [Point; 3];
 
 const SHOULDER: [f64; 2] = [200.0, 144.0];
 
-fn stretched() -> Arm {
+pub(crate) fn stretched() -> Arm {
     [SHOULDER, [258.0, 122.0], [316.0, 96.0]].map(Point::from)
 }
 
-fn across() -> Arm {
+pub(crate) fn across() -> Arm {
     [SHOULDER, [156.0, 186.0], [112.0, 228.0]].map(Point::from)
 }
 
 /// The figure with its right arm as said.
 fn figure(arm: Arm) -> Drawing {
+    read_pixels(SIZE, &pixels(arm), &BitmapOptions::default()).expect("a figure")
+}
+
+/// Its pixels: red, green, blue, alpha.
+pub(crate) fn pixels(arm: Arm) -> Vec<u8> {
     let at = |x: f64, y: f64| Point::new(x, y);
     let mut pixels = vec![0; SIZE[0] * SIZE[1] * 4];
     for (k, pixel) in pixels.chunks_exact_mut(4).enumerate() {
@@ -110,10 +115,10 @@ fn figure(arm: Arm) -> Drawing {
         paint(mark((p - elbow).norm() - 5.0), WHITE);
         paint(capsule(p, hand, hand, 16.0), HAND);
     }
-    read_pixels(SIZE, &pixels, &BitmapOptions::default()).expect("a figure")
+    pixels
 }
 
-fn layer() -> LayerSpec {
+pub(crate) fn layer() -> LayerSpec {
     let poses = vec![
         PoseSpec::drawn("stretched", figure(stretched())),
         PoseSpec::drawn("across", figure(across())),

@@ -6,39 +6,30 @@
 //! 2. Each is cut out by its own edge (`rim`): the blended outline where it ends, and a little way into its neighbours where it does not.
 //! 3. What another region hides in a drawing is shown from the drawings that show it (`pictures`).
 
+mod depth_order;
 mod division;
 mod pictures;
+mod regions;
 mod rim;
 
 use rayon::prelude::*;
 
-use self::division::Division;
-use self::rim::{Boundary, Rim};
+pub use self::depth_order::DepthOrder;
+pub(crate) use self::pictures::RegionPictures;
+pub(crate) use self::regions::{RegionMesh, Regions};
 use super::{Camera, Frame, PaintOptions, Painter, PoseTexture, Silhouette, Texture};
 use crate::input::Drawing;
 use crate::math::Point;
 use crate::pose::Mapping;
 
-/// Rings of triangles by which a region is painted beyond its rim, and by which its rim lies beyond it.
-const PAINTED_RINGS: usize = 2;
-const RIM_RINGS: usize = 1;
-
-/// What the weight of a shape counts beside that of its drawing for the order of regions.
-const FAINT: f64 = 1e-6;
-
 /// Paints frames of a figure that lies over itself.
 #[derive(Debug, Clone)]
 pub(crate) struct OverlapPainter {
-    division: Division,
-    regions: Vec<Region>,
+    regions: Regions,
+    /// One a region.
+    painters: Vec<Painter>,
     silhouette: Silhouette,
     camera: Camera,
-}
-
-#[derive(Debug, Clone)]
-struct Region {
-    painter: Painter,
-    rims: Vec<Rim>,
 }
 
 impl OverlapPainter {
@@ -52,48 +43,20 @@ impl OverlapPainter {
         camera: Camera,
         options: PaintOptions,
     ) -> Self {
-        let division = Division::new(mapping);
-        let triangles = mapping.poses.topology().triangles();
-        let positions = mapping.poses.positions();
-        let unit = |pose: usize| -> Vec<f64> { (0..positions.len()).map(|k| f64::from(u8::from(k == pose))).collect() };
-        let shown: Vec<Vec<Vec<Point>>> = (0..positions.len())
-            .map(|pose| silhouette.at(&positions[pose], &unit(pose)))
-            .collect();
-        let open = (0..positions.len())
-            .find(|pose| mapping.overlaps.depth(*pose).is_none())
-            .unwrap_or(0);
-        let boundary = Boundary::new(&mapping.rings, &shown[open], &positions[open]);
-        let grown: Vec<Vec<usize>> = (0..division.count)
-            .map(|region| {
-                (0..triangles.len())
-                    .filter(|t| division.region_of[*t] == region)
-                    .collect()
-            })
-            .collect();
-        let rims: Vec<Vec<Rim>> = (grown.iter())
-            .map(|own| boundary.rims(&corners(triangles, &with_rings(triangles, own, RIM_RINGS))))
-            .collect();
+        let regions = Regions::new(mapping, &silhouette);
         let samples = camera.scale() * options.supersample.clamp(1, PaintOptions::MOST_SAMPLES) as f64;
-        let pictures = pictures::Pictures {
-            mapping,
-            division: &division,
-            drawings,
-            rims: &rims,
-            shown: &shown,
-            hidden: Vec::new(),
-        }
-        .with_hidden();
-        let regions = (0..division.count)
+        let pictures = RegionPictures::new(mapping, &regions, drawings);
+        let painters = (0..regions.count())
             .into_par_iter()
             .map(|region| {
-                let painted = with_rings(triangles, &grown[region], PAINTED_RINGS);
                 let textures = (drawings.iter().enumerate())
-                    .map(|(drawing, (_, drawn_on))| {
-                        let (picture, rims) = pictures.of(region, drawing, &painted);
-                        PoseTexture {
-                            texture: Texture::within(&picture, &rims, samples),
-                            drawn_on: *drawn_on,
-                        }
+                    .map(|(drawing, (_, drawn_on))| PoseTexture {
+                        texture: Texture::within(
+                            &pictures.of(region, drawing),
+                            &regions.rims_at(region, *drawn_on, mapping),
+                            samples,
+                        ),
+                        drawn_on: *drawn_on,
                     })
                     .collect();
                 let painter = Painter::new(
@@ -104,18 +67,21 @@ impl OverlapPainter {
                     camera,
                     options,
                 );
-                Region {
-                    painter: painter.of_triangles(corners(triangles, &painted)),
-                    rims: rims[region].clone(),
-                }
+                painter.of_triangles(regions.painted(region, mapping))
             })
             .collect();
         Self {
-            division,
             regions,
+            painters,
             silhouette,
             camera,
         }
+    }
+
+    /// The regions that it paints.
+    #[must_use]
+    pub(crate) fn regions(&self) -> &Regions {
+        &self.regions
     }
 
     /// The frame of the figure whose #vertices positions are `positions`, as of [`Painter::paint`].
@@ -123,15 +89,9 @@ impl OverlapPainter {
     pub(crate) fn paint(&self, positions: &[Point], weights: &[f64], texture_weights: &[f64]) -> Frame {
         let rings = self.silhouette.at(positions, weights);
         let mut frame: Option<Frame> = None;
-        // Where no drawing of a pose that lies over itself is seen, its shape may count all the same.
-        let counts = texture_weights
-            .iter()
-            .zip(weights)
-            .map(|(seen, own)| seen + FAINT * own.max(0.0));
-        for region in self.division.order(&counts.collect::<Vec<_>>()) {
-            let Region { painter, rims } = &self.regions[region];
-            let within: Vec<Vec<Point>> = rims.iter().map(|rim| rim.at(&rings, positions)).collect();
-            let own = painter.paint_within(positions, weights, texture_weights, within);
+        for region in self.regions.order().from_back_to_front(weights, texture_weights) {
+            let within = self.regions.rims_in(region, &rings, positions);
+            let own = self.painters[region].paint_within(positions, weights, texture_weights, within);
             match &mut frame {
                 None => frame = Some(own),
                 Some(frame) => frame.put_over(&own, 1.0),
@@ -142,24 +102,4 @@ impl OverlapPainter {
             Frame::filled(columns, rows, [0; 4])
         })
     }
-}
-
-/// Some triangles and those around them, in order.
-fn with_rings(triangles: &[[usize; 3]], own: &[usize], rings: usize) -> Vec<usize> {
-    let mut is_in = vec![false; triangles.len()];
-    own.iter().for_each(|t| is_in[*t] = true);
-    let most = triangles.iter().flatten().max().map_or(0, |v| v + 1);
-    for _ in 0..rings {
-        let mut touched = vec![false; most];
-        let inside = (0..triangles.len()).filter(|t| is_in[*t]);
-        inside.flat_map(|t| triangles[t]).for_each(|v| touched[v] = true);
-        for (t, triangle) in triangles.iter().enumerate() {
-            is_in[t] |= triangle.iter().any(|v| touched[*v]);
-        }
-    }
-    (0..triangles.len()).filter(|t| is_in[*t]).collect()
-}
-
-fn corners(triangles: &[[usize; 3]], numbers: &[usize]) -> Vec<[usize; 3]> {
-    numbers.iter().map(|t| triangles[*t]).collect()
 }
