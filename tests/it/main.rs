@@ -25,6 +25,7 @@ mod parts;
 mod rims;
 mod scenes;
 mod separate;
+mod separate_overlaps;
 mod shape;
 mod shape_data;
 mod sheets;

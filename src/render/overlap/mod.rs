@@ -15,7 +15,7 @@ mod rim;
 use rayon::prelude::*;
 
 pub use self::depth_order::DepthOrder;
-pub(crate) use self::pictures::RegionPictures;
+pub(crate) use self::pictures::{RegionPictures, cut_out};
 pub(crate) use self::regions::{RegionMesh, Regions};
 use super::{Camera, Frame, PaintOptions, Painter, PoseTexture, Silhouette, Texture};
 use crate::input::Drawing;

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::regions::Regions;
 use crate::input::{Drawing, Picture};
 use crate::math::{Point, for_each_cell};
+use crate::outline::Outline;
 use crate::pose::Mapping;
 use crate::render::coverage::Coverage;
 use crate::render::nearest_seed::nearest_seeds;
@@ -146,6 +147,15 @@ impl<'a> RegionPictures<'a> {
         let wider = (CUT_WIDER * of.outline.diagonal() * of.picture.pixels_per_unit).round() as usize;
         hidden.map(|hidden| widened(&hidden, width, wider))
     }
+}
+
+/// A picture cut out by its outline: what a frame at its pose shows.
+#[must_use]
+pub(crate) fn cut_out(picture: &Picture, outline: &Outline) -> Picture {
+    let coverage = Coverage::of_outline(outline, |p| picture.to_pixels(p), picture.width, picture.height);
+    let mut picture = picture.clone();
+    cut(&mut picture, &coverage);
+    picture
 }
 
 /// Cuts a picture out by what is covered, with colours at full strength up to the edge.

@@ -4,6 +4,7 @@ use super::depth_order::DepthOrder;
 use super::division::Division;
 use super::rim::{Boundary, Rim, boundary_loops};
 use crate::math::{Point, point};
+use crate::mesh::geometry;
 use crate::pose::Mapping;
 use crate::render::Silhouette;
 
@@ -18,6 +19,9 @@ const TRUNK: &str = "trunk";
 #[derive(Debug, Clone)]
 pub(crate) struct Regions {
     order: DepthOrder,
+    /// By triangle.
+    region_of: Vec<usize>,
+    open: usize,
     /// By region, its own triangles.
     own: Vec<Vec<usize>>,
     rims: Vec<Vec<Rim>>,
@@ -62,6 +66,8 @@ impl Regions {
         Self {
             names: names(mapping, &own),
             order,
+            region_of,
+            open,
             rims: within_rims.iter().map(|within| boundary.rims(within)).collect(),
             meshes: within_rims
                 .iter()
@@ -82,6 +88,18 @@ impl Regions {
     #[must_use]
     pub(crate) fn order(&self) -> &DepthOrder {
         &self.order
+    }
+
+    /// The region that a triangle is of.
+    #[must_use]
+    pub(crate) fn region_of(&self, triangle: usize) -> usize {
+        self.region_of[triangle]
+    }
+
+    /// A pose that does not lie over itself.
+    #[must_use]
+    pub(crate) fn open_pose(&self) -> usize {
+        self.open
     }
 
     /// By region, the name of the limb that most of its triangles belong to; no two are called alike.
@@ -111,6 +129,49 @@ impl Regions {
     /// The edge of a region where the rings of the silhouette and the vertices of the mesh are there.
     pub(super) fn rims_in(&self, region: usize, rings: &[Vec<Point>], positions: &[Point]) -> Vec<Vec<Point>> {
         self.rims[region].iter().map(|rim| rim.at(rings, positions)).collect()
+    }
+
+    /// About so many points of a region's edge, as far apart as the same number around it are in an open pose: by point, its places in all poses. Those that another part of
+    /// the region lies over in some pose are left out, since the edge is not seen there.
+    #[must_use]
+    pub(crate) fn edge_points(&self, region: usize, mapping: &Mapping, count: usize) -> Vec<Vec<Point>> {
+        let poses = 0..mapping.poses.len();
+        let at = |rim: &Rim, pose: usize| rim.at(&self.shown[pose], &mapping.poses.positions()[pose]);
+        let steps = |ring: &[Point]| -> Vec<f64> {
+            let next = ring.iter().cycle().skip(1);
+            ring.iter().zip(next).map(|(a, b)| (b - a).norm()).collect()
+        };
+        let length = |rim: &&Rim| steps(&at(rim, self.open)).iter().sum::<f64>();
+        let longest = self.rims[region].iter().max_by(|a, b| length(a).total_cmp(&length(b)));
+        let Some(rim) = longest else { return Vec::new() };
+        let rings: Vec<Vec<Point>> = poses.map(|pose| at(rim, pose)).collect();
+        let (steps, total) = (steps(&rings[self.open]), length(&rim));
+        let mut travelled = 0.0;
+        let mut points = Vec::new();
+        for (node, step) in steps.iter().enumerate() {
+            let is_next = travelled * count as f64 >= points.len() as f64 * total && points.len() < count;
+            if is_next {
+                points.push(node);
+            }
+            travelled += step;
+        }
+        let places = |node: usize| -> Option<Vec<Point>> { rings.iter().map(|ring| ring.get(node).copied()).collect() };
+        let mesh = &self.meshes[region];
+        let holding = |pose: usize, place: Point| -> Vec<[usize; 3]> {
+            let positions = &mapping.poses.positions()[pose];
+            let holds = |triangle: &&[usize; 3]| {
+                let corners = triangle.map(|v| positions[mesh.vertices[v]]);
+                let shares = geometry::barycentric(corners, place);
+                shares.is_some_and(|shares| shares.iter().all(|share| *share >= 0.0))
+            };
+            mesh.triangles.iter().filter(holds).copied().collect()
+        };
+        let is_seen = |places: &Vec<Point>| {
+            let own: Vec<usize> = holding(self.open, places[self.open]).concat();
+            let is_own = |triangle: &[usize; 3]| triangle.iter().any(|v| own.contains(v));
+            (0..places.len()).all(|pose| holding(pose, places[pose]).iter().all(is_own))
+        };
+        points.into_iter().filter_map(places).filter(is_seen).collect()
     }
 
     /// A region as a mesh of its own: the triangles that its edge runs around, or passes through.
