@@ -1,5 +1,7 @@
 //! `inbetween separate`.
 
+mod document;
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -8,31 +10,17 @@ use inbetween::export::{PendingFile, png_bytes, svg_text};
 use inbetween::input::{Art, Canvas, Picture};
 use inbetween::render::{Frame, VectorFrame, VectorNode, VectorShape};
 use inbetween::scene::{Scene, Separated, SeparatedDrawing};
-use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value};
+use toml_edit::{DocumentMut, InlineTable};
 
 use super::{Failure, Verbosity};
-use crate::tables::{name_of, tables, tables_of};
-
-/// What of a pose says how its drawing is read; of the pictures that are written nothing is left to be said.
-const OF_READING: [&str; 10] = [
-    "element",
-    "figure",
-    "gap",
-    "paper",
-    "threshold",
-    "keep",
-    "drop",
-    "frame",
-    "cell",
-    "source",
-];
 
 /// Write the parts that were found as layers
 ///
-/// Loose parts of the drawings (a hat that floats, a spark, an eyebrow) become the layers of a new scene in DIR: a picture a part and
-/// pose, PNG of bitmaps and SVG of vector drawings, on the canvas of the drawing that it was found in, and a scene.toml with everything
-/// that the old one says. A frame at a pose stays as it is. Between poses a part that only some of them have appears where it is, instead
-/// of growing.
+/// Loose parts of the drawings (a hat that floats, a spark, an eyebrow) and parts that lie over one another (an arm in front of the chest)
+/// become the layers of a new scene in DIR: a picture a part and pose, PNG of bitmaps and SVG of vector drawings, on the canvas of the
+/// drawing that it was found in, and a scene.toml with everything that the old one says. What one part hides of another is filled from the
+/// other poses; such parts hang on one another by landmarks, come in each pose's order, and are PNG pictures of vector drawings, too. A
+/// frame at a pose stays as it is. Between poses a part that only some of them have appears where it is, instead of growing.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  inbetween separate wizard/scene.toml -o wizard-layers")]
 pub(crate) struct Arguments {
@@ -72,7 +60,7 @@ pub(crate) fn run(arguments: &Arguments, verbosity: Verbosity) -> Result<(), Fai
     verbosity.notes(&separated.notes);
     if separated.layers.len() < 2 {
         return Err(anyhow::anyhow!(
-            "{}: the drawings have no loose parts; there is nothing to separate",
+            "{}: the drawings have no loose parts, and none that lie over one another; there is nothing to separate",
             file.display()
         )
         .into());
@@ -118,7 +106,7 @@ fn files(scene: &Scene, separated: &Separated, text: &str, folder: &Path) -> any
     let mut document: DocumentMut = text
         .parse()
         .with_context(|| format!("cannot edit {}", scene.file.display()))?;
-    edit(&mut document, scene, separated, sources)?;
+    document::edit(&mut document, scene, separated, sources)?;
     let text = document.to_string();
     Scene::parse(&text, &folder.join("scene.toml"))
         .context("the scene cannot be put into layers; take out what its cause names, and put it back afterwards")?;
@@ -179,106 +167,6 @@ fn page(art: &Art, canvas: &Canvas) -> anyhow::Result<String> {
         low.x, low.y, size.x, size.y
     );
     Ok(text.replacen("viewBox=\"0 0 1 1\" width=\"1\" height=\"1\"", &own, 1))
-}
-
-/// Puts the scene into layers.
-fn edit(
-    document: &mut DocumentMut,
-    scene: &Scene,
-    separated: &Separated,
-    sources: Vec<InlineTable>,
-) -> anyhow::Result<()> {
-    let mut layers = ArrayOfTables::new();
-    for layer in &separated.layers {
-        let mut table = Table::new();
-        table.insert("name", layer.name.as_str().into());
-        layers.push(table);
-    }
-    document.insert("layer", Item::ArrayOfTables(layers));
-    edit_input(document)?;
-    let poses = tables(document, "pose");
-    if poses.len() != sources.len() {
-        bail!("the scene has no list of [[pose]] tables");
-    }
-    for (index, (pose, source)) in poses.into_iter().zip(sources).enumerate() {
-        for key in OF_READING {
-            pose.remove(key);
-        }
-        if !pose.contains_key("deform_of") {
-            pose.insert("source", Item::Value(Value::InlineTable(source)));
-        }
-        let place: Array = scene.poses[index].at.iter().copied().collect();
-        pose.insert("at", Item::Value(Value::Array(place)));
-        let order = &separated.draw_orders[index];
-        if !order.is_sorted() {
-            let names = order.iter().map(|&layer| &separated.layers[layer]);
-            let own = names.filter(|layer| layer.drawings[index].is_some());
-            let names: Array = own.map(|layer| layer.name.as_str()).collect();
-            pose.insert("order", Item::Value(Value::Array(names)));
-        }
-        if let Some(handles) = pose.get_mut("handles") {
-            name_handles(handles, index, separated);
-        }
-    }
-    for landmark in tables(document, "landmark") {
-        let name = name_of(landmark).unwrap_or_default();
-        let Some(layer) = separated
-            .layers
-            .iter()
-            .find(|layer| layer.landmarks.iter().any(|own| own == name))
-        else {
-            continue;
-        };
-        landmark.insert("layer", layer.name.as_str().into());
-        let Some(places) = landmark.get_mut("at").and_then(Item::as_table_like_mut) else {
-            continue;
-        };
-        for (pose, drawing) in scene.poses.iter().zip(&layer.drawings) {
-            if drawing.is_none() {
-                places.remove(&pose.name);
-            }
-        }
-    }
-    Ok(())
-}
-
-/// The pictures that are written are cut out, and of one piece.
-fn edit_input(document: &mut DocumentMut) -> anyhow::Result<()> {
-    let input = document.entry("input").or_insert(Item::Table(Table::new()));
-    let input = input.as_table_like_mut().context("`input` is no table")?;
-    for key in ["gap", "paper", "cells"] {
-        input.remove(key);
-    }
-    input.insert("figure", "alpha".into());
-    input.insert("parts", "largest".into());
-    Ok(())
-}
-
-/// Says for each handle of a copy which layer it takes hold of.
-fn name_handles(handles: &mut Item, pose: usize, separated: &Separated) {
-    // Each layer has its handles in the order of the file.
-    let mut left: Vec<_> = separated
-        .layers
-        .iter()
-        .map(|layer| layer.handles[pose].iter().peekable())
-        .collect();
-    for handle in tables_of(handles) {
-        let from = handle.get("from").and_then(Item::as_array).map(|from| {
-            let numbers = from
-                .iter()
-                .filter_map(|v| v.as_float().or(v.as_integer().map(|v| v as f64)));
-            numbers.collect::<Vec<f64>>()
-        });
-        let is_next = |own: &mut std::iter::Peekable<std::slice::Iter<'_, inbetween::pipeline::HandleMove>>| {
-            own.peek()
-                .is_some_and(|next| from.as_deref() == Some(&[next.from.x, next.from.y]))
-        };
-        let found = left.iter_mut().position(is_next);
-        if let Some(layer) = found {
-            left[layer].next();
-            handle.insert("layer", separated.layers[layer].name.as_str().into());
-        }
-    }
 }
 
 /// Writes all files or none.

@@ -7,7 +7,7 @@
 //! | part | bytes |
 //! |---|---|
 //! | `INBT` | 4 |
-//! | version, 1 | `u16` |
+//! | version, 1, or 2 where a layer has regions | `u16` |
 //! | precision: 0 single, 1 quantised | `u8` |
 //! | 0 | `u8` |
 //! | columns and rows of the frame | 2 × `u32` |
@@ -36,6 +36,11 @@
 //! | single: N V positions | 2 N V × `f32` |
 //! | quantised: lowest x and y, step; N V positions in steps above the lowest | 3 × `f64`, 2 N V × `u16` |
 //! | number of textures; each: name, length of a PNG file, the file, V places on it as fractions of its width and height: single as they are, quantised times 65,535 | `u32`, (`str`, `u32`, bytes, 2 V × `f32` or `u16`) |
+//! | version 2: R, number of regions, 0 of a layer that does not lie over itself | `u32` |
+//! | version 2, each region: name; W, its vertices; which of the layer's they are | `str`, `u32`, W × `idx` |
+//! | … number of triangles; the triangles, of its own vertices counted from 0 | `u32`, 3 × `idx` |
+//! | … its textures, as those of a layer, with W places each; the layer itself then has none | as above |
+//! | version 2, R > 0: for each of the N poses which region lies in front of which, row by row: 1 where that of the row does, −1 where that of the column does, 0 where they do not meet | N R R × `i8` |
 //!
 //! - **Size**: a vertex takes 4 bytes a pose quantised, 8 single, and as much for each texture. As text in the mapping file it takes about 40.
 //! - **Precision**: quantised positions are off by at most half a step in x and y; the step is a power of two, and there are at most
@@ -45,6 +50,10 @@
 //!   own place), over the animation exact at frames. Beyond the grid the border holds.
 //! - **Drawing** a frame: as [`Puppet`](crate::render::Puppet)s are drawn. There is no outline in the file: the textures' alpha is
 //!   the edge.
+//! - **Regions** are how a layer is drawn whose parts lie over one another in some poses, an arm over the chest: blended as one mesh, then drawn region by region, from back to
+//!   front, each with its own triangles and textures. The order of a frame is found from the signs of the poses: their sum, each pose counting as its texture does (and a
+//!   millionth of its weight besides, where no texture tells). Of the regions that are left, the one is drawn next whose row has the least sum of positive entries in the
+//!   columns of those that are left, the first of equal ones. [`DepthOrder`] does so.
 //! - A layer's weights are those of the poses it has, [restricted](crate::math::restricted_weights) and summing to 1 again.
 //!
 //! The reader trusts nothing: every count is held against the bytes that are left before anything is allocated, every index against what
@@ -62,11 +71,14 @@ use crate::blend::BlendOptions;
 use crate::math::Point;
 use crate::mesh::MeshPoint;
 use crate::pose::PoseSet;
+use crate::render::DepthOrder;
 
 /// The first bytes of a file.
 const MAGIC: [u8; 4] = *b"INBT";
-/// The version that is written, and the only one that is read.
+/// The version that is written where no layer has regions.
 const VERSION: u16 = 1;
+/// The version that is written where one has, and the last one that is read.
+const VERSION_WITH_REGIONS: u16 = 2;
 /// In place of a pose: the canonical reference.
 const CANONICAL: u32 = u32::MAX;
 
@@ -181,7 +193,31 @@ pub struct RuntimeLayer {
     pub options: BlendOptions,
     /// Where it hangs on another layer.
     pub tie: Option<RuntimeTie>,
-    /// Its drawings.
+    /// Its drawings; none of a layer with regions, which have their own.
+    pub textures: Vec<RuntimeTexture>,
+    /// What it is drawn in, where it lies over itself.
+    pub regions: Option<RuntimeRegions>,
+}
+
+/// The regions of a layer that lies over itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RuntimeRegions {
+    /// At least one.
+    pub regions: Vec<RuntimeRegion>,
+    /// Which of them lies in front of which, in each pose of the layer.
+    pub order: DepthOrder,
+}
+
+/// A part of a layer that is drawn at once.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RuntimeRegion {
+    /// Its name.
+    pub name: String,
+    /// Which vertices of the layer's mesh it has, in order.
+    pub vertices: Vec<usize>,
+    /// Three of its own vertices each, by their places in `vertices`.
+    pub triangles: Vec<[usize; 3]>,
+    /// Its pictures of the layer's drawings, with a place for each of its own vertices.
     pub textures: Vec<RuntimeTexture>,
 }
 
@@ -206,7 +242,7 @@ pub struct RuntimeTexture {
     pub name: String,
     /// A PNG file.
     pub png: Vec<u8>,
-    /// #vertices places, as fractions of its width and height from the upper left corner, in [0, 1].
+    /// A place for each vertex, as fractions of its width and height from the upper left corner, in [0, 1].
     pub places: Vec<Point>,
 }
 
@@ -227,7 +263,7 @@ pub enum RuntimeError {
     #[error("this is no file of this kind: it does not begin with INBT")]
     NotOurs,
     /// They were written by a later version.
-    #[error("the file has version {found}; this program reads version 1")]
+    #[error("the file has version {found}; this program reads versions 1 and 2")]
     Version {
         /// The file's.
         found: u16,

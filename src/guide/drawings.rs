@@ -111,7 +111,8 @@
 //! An arm in front of the chest, legs that cross, a hand on the hip: there the outline of a drawing does not show where the parts end. If another
 //! drawing shows them apart, they are found by what is drawn: the limbs of the drawing with the longest outline for its area, the *open* one, are sought in those whose outline is clearly
 //! shorter. The mesh then lies over itself in these poses; frames are painted from back to front, each part cut out by its own edge, and what a
-//! drawing hides is shown from those that show it.
+//! drawing hides is shown from those that show it. Where none does, the nearest colours go on; `separate` writes these parts as layers, too, for whoever wants to draw there
+//! ([`layers`](super::layers#from-drawings-that-lie-over-themselves)).
 //!
 //! ```toml
 //! [input]

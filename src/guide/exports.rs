@@ -43,10 +43,18 @@
 //! Files of moving curves are large, since every path has keys of its own; a snake of 549 curves in 122 frames has 10 MB, before the compression that web
 //! servers do. Layers of bitmaps are one picture a frame in SVG and Lottie files. If a character consists of bitmaps, a video, WebP, glTF or Spine is the smaller file.
 //!
+//! # Meshes of figures that lie over themselves
+//!
+//! Where an arm lies in front of the chest in some poses ([`drawings`](super::drawings)), one mesh could not say what is in front. So glTF and Spine files have a mesh for each
+//! part that is painted at once, called after the layer and the limb, as in `hero/trunk` and `hero/limb 2.1`: each with pictures that are whole where another part hides them,
+//! and in the order of depth that frames have, which changes over time (`drawOrder` in Spine, the depth of nodes in glTF). Neighbours overlap by a ring of triangles in which
+//! both show the same, so that no seam opens. Limbs that lie over nothing stay with the trunk. Pixel art is drawn as one mesh, as its frames are.
+//!
 //! # Runtime data
 //!
 //! A `.inb` file holds everything that a frame is computed from and nothing that can be computed from it: a game poses the character while it plays, from
-//! weights of its own. It is documented byte for byte, and read, in [`export::runtime`](crate::export::runtime).
+//! weights of its own. It is documented byte for byte, and read, in [`export::runtime`](crate::export::runtime). A layer that lies over itself is blended as one mesh and drawn
+//! region by region; the file says which lies in front in each pose, and how a player orders them in between.
 //!
 //! # Long renders, and many computers
 //!

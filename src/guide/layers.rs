@@ -3,8 +3,8 @@
 //! # When layers are needed
 //!
 //! A drawing is one outline, and its mesh is one surface: an arm that crosses the chest has no outline of its own, and what it hides is
-//! nowhere. Draw the arm as a layer. It then has drawings, landmarks and a mesh of its own, and the body behind it is whole. Loose parts become
-//! layers by themselves ([`drawings`](super::drawings)).
+//! nowhere. Where other drawings show the arm apart, it is found by itself, as loose parts are ([`drawings`](super::drawings)). Where none does, or where you want to draw what is
+//! hidden, draw the arm as a layer. It then has drawings, landmarks and a mesh of its own, and the body behind it is whole.
 //!
 //! # A scene with layers
 //!
@@ -107,6 +107,23 @@
 //! `order` of a pose lists the layers that it has from back to front, where that is not the order of the scene. The order of a frame is that of the drawing
 //! that is seen most, so it changes at once, at a place where the layers should not lie over one another. A layer that some poses lack
 //! fades there as a whole.
+//!
+//! # From drawings that lie over themselves
+//!
+//! ```text
+//! inbetween separate hero/scene.toml -o hero-layers
+//! ```
+//!
+//! makes layers of drawings without any: of loose parts, and of parts that lie over one another in some of the drawings. Each of these becomes a picture a pose, of one size, with
+//! what the others hide of it filled from the poses that show it, or else by its nearest colours: paint over that as you like. The layers are listed from back to front, a pose
+//! that shows them otherwise has an `order`, and each hangs on the part that it joins (of several the one with the longest joint) by a landmark in the middle of the joint, called
+//! `... joint`; landmarks called `... edge 1` and so on hold the edge together that it was cut along. Limbs that lie over nothing stay with the trunk. Landmarks go to the layer that they lie on; a line over several of them is left out, and a note says so, as it does
+//! where a part joins several others or lies in front of itself by way of others. Drawings in curves are written as pixels, since curves cannot tell what hides from what is
+//! hidden, and places are counted in these pixels.
+//!
+//! Frames at poses are those of the scene that was separated. In between the parts are matched anew, each by itself, so small differences are to be expected.
+//!
+//! # One layer alone
 //!
 //! To look at one layer, name it:
 //!

@@ -2,16 +2,21 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::PipelineError;
 use super::drawings::sharpen;
 use super::layer::{LayerShape, Part, PosedLayer};
 use super::note::{Note, NoteKind};
 use super::spec::{ArtChoice, TextureSpec};
 use crate::input::Drawing;
+use crate::math::Point;
 use crate::pose::TextureMesh;
 use crate::render::drawing::{CarriedDrawing, PoseArt, VectorNode, VectorPicture};
 use crate::render::puppet::{PuppetLayer, PuppetTexture};
-use crate::render::{Camera, Frame, OverlapPainter, PaintOptions, Painter, PoseTexture, Sampling, Texture};
+use crate::render::{
+    Camera, Frame, OverlapPainter, PaintOptions, Painter, PoseTexture, RegionPictures, Regions, Sampling, Texture,
+};
 
 /// The drawings of a layer, ready to be drawn on its mesh.
 #[derive(Debug)]
@@ -137,15 +142,58 @@ impl LayerArt {
         }
     }
 
-    /// The layer as a textured mesh.
-    pub(super) fn puppet(&self, shape: &LayerShape, camera: &Camera) -> PuppetLayer {
-        let poses = &shape.mapping().poses;
-        let texture = |(drawing, &pose): (&Arc<Drawing>, &usize)| {
-            let (name, positions) = (&poses.names()[pose], &poses.positions()[pose]);
-            PuppetTexture::new(name, &drawing.picture, &drawing.outline, positions, camera.scale())
+    /// The layer as textured meshes: one, or of a figure that lies over itself one a region.
+    pub(super) fn puppet(&self, shape: &LayerShape, camera: &Camera) -> Vec<PuppetLayer> {
+        let (mapping, scale) = (shape.mapping(), camera.scale());
+        let (names, positions) = (mapping.poses.names(), mapping.poses.positions());
+        let Some(regions) = self.regions() else {
+            let texture = |(drawing, &pose): (&Arc<Drawing>, &usize)| {
+                PuppetTexture::new(
+                    &names[pose],
+                    &drawing.picture,
+                    &drawing.outline,
+                    &positions[pose],
+                    scale,
+                )
+            };
+            let textures = self.drawings.iter().zip(&self.drawn_on).map(texture).collect();
+            return vec![PuppetLayer::new(
+                shape.name(),
+                mapping,
+                textures,
+                &self.drawing_of,
+                camera,
+            )];
         };
-        let textures = self.drawings.iter().zip(&self.drawn_on).map(texture).collect();
-        PuppetLayer::new(shape.name(), shape.mapping(), textures, &self.drawing_of, camera)
+        let drawn: Vec<(&Drawing, usize)> = (self.drawings.iter().map(Arc::as_ref))
+            .zip(self.drawn_on.iter().copied())
+            .collect();
+        let pictures = RegionPictures::new(mapping, regions, &drawn);
+        let layer = |(region, name): (usize, &String)| {
+            let mesh = regions.mesh(region);
+            let texture = |(drawing, &pose): (usize, &usize)| {
+                let places: Vec<Point> = mesh.vertices.iter().map(|v| positions[pose][*v]).collect();
+                PuppetTexture::of_cut(&names[pose], &pictures.cut(region, drawing), &places, scale)
+            };
+            let textures = self.drawn_on.iter().enumerate().map(texture).collect();
+            let name = format!("{}/{name}", shape.name());
+            PuppetLayer::of_region(name, mapping, mesh, textures, &self.drawing_of, camera)
+        };
+        regions.names().par_iter().enumerate().map(layer).collect()
+    }
+
+    /// The drawing that each pose shows.
+    #[cfg(feature = "export")]
+    pub(super) fn shown_drawings(&self) -> &[usize] {
+        &self.drawing_of
+    }
+
+    /// The regions that a figure that lies over itself is painted in.
+    pub(super) fn regions(&self) -> Option<&Regions> {
+        match &self.style {
+            Style::Overlapping(painter) => Some(painter.regions()),
+            Style::Pixels(_) | Style::Curves(_) => None,
+        }
     }
 }
 

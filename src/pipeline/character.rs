@@ -12,9 +12,10 @@ use super::note::Note;
 use super::{Build, PipelineError, weighting};
 use crate::animation::{Animation, Background};
 use crate::blend::Certifier;
+use crate::math::Point;
 use crate::pipeline::spec::CharacterSpec;
 use crate::render::drawing::{VectorFrame, VectorGroup, VectorNode};
-use crate::render::puppet::{Puppet, PuppetFrame};
+use crate::render::puppet::{Puppet, PuppetFrame, PuppetLayer};
 use crate::render::{Camera, Frame, PaintOptions, Sampling};
 use crate::weights::WeightProvider;
 
@@ -241,7 +242,7 @@ impl Character {
         Puppet {
             size: self.camera.size(),
             layers: (self.figure.layers.iter().zip(&self.art))
-                .map(|(shape, art)| art.puppet(shape, &self.camera))
+                .flat_map(|(shape, art)| art.puppet(shape, &self.camera))
                 .collect(),
             sampling: self.sampling,
         }
@@ -250,14 +251,35 @@ impl Character {
     /// What changes of `puppet`, as [`Self::puppet`] gives it, in one frame.
     #[must_use]
     pub fn puppet_frame(&self, puppet: &Puppet, posed: &Posed) -> PuppetFrame {
-        let layers = puppet.layers.iter().zip(&posed.layers);
-        PuppetFrame {
-            layers: layers
-                .map(|(layer, posed)| {
+        let mut shown = puppet.layers.iter();
+        let mut layers = Vec::new();
+        // By layer, its meshes from back to front.
+        let mut meshes: Vec<Vec<usize>> = Vec::new();
+        for (art, posed) in self.art.iter().zip(&posed.layers) {
+            let first = layers.len();
+            let Some(regions) = art.regions() else {
+                let frame = |layer: &PuppetLayer| {
                     layer.frame(&posed.positions, &posed.texture_weights, posed.opacity, &self.camera)
-                })
-                .collect(),
-            order: posed.order.clone(),
+                };
+                layers.extend(shown.next().map(frame));
+                meshes.push(vec![first]);
+                continue;
+            };
+            for region in 0..regions.count() {
+                let vertices = regions.mesh(region).vertices.iter();
+                let positions: Vec<Point> = vertices.map(|v| posed.positions[*v]).collect();
+                let frame =
+                    |layer: &PuppetLayer| layer.frame(&positions, &posed.texture_weights, posed.opacity, &self.camera);
+                layers.extend(shown.next().map(frame));
+            }
+            let order = regions
+                .order()
+                .from_back_to_front(&posed.weights, &posed.texture_weights);
+            meshes.push(order.into_iter().map(|region| first + region).collect());
+        }
+        PuppetFrame {
+            layers,
+            order: posed.order.iter().flat_map(|&layer| meshes[layer].clone()).collect(),
         }
     }
 

@@ -63,6 +63,44 @@ pub enum NoteKind {
         /// Their names, from back to front.
         parts: Vec<LoosePartName>,
     },
+    /// In the pose, a part lies in front of itself by way of others, so that no order shows all of it.
+    DepthCycle {
+        /// A part that lies in front of the other there, and is drawn behind it.
+        front: String,
+        /// The other.
+        behind: String,
+    },
+    /// A part that lies over others joins several of them, and hangs on one.
+    JointsLeft {
+        /// Its name.
+        region: String,
+        /// What it hangs on.
+        to: String,
+        /// What else it joins.
+        left: Vec<String>,
+    },
+    /// A part that lies over others joins none of them, or where no landmark can be put in all drawings, and hangs on nothing.
+    NoJoint {
+        /// Its name.
+        region: String,
+    },
+    /// Parts that lie over one another were not sought where the drawings were separated.
+    OverlapsNotSought {
+        /// Why they could not be.
+        why: String,
+    },
+    /// A line of landmarks lies on several parts that lie over one another, and was left out.
+    LineDivided {
+        /// The name of the line.
+        landmark: String,
+    },
+    /// The parts of vector drawings were written as pixels.
+    CurvesAsPixels {
+        /// The poses that they are of.
+        poses: Vec<String>,
+        /// Pixels a unit of the drawings.
+        pixels_per_unit: f64,
+    },
 }
 
 /// A loose part by its name.
@@ -83,6 +121,12 @@ impl Note {
             pose: None,
             kind,
         }
+    }
+
+    /// A remark on the parts that drawings were separated into.
+    #[cfg(feature = "scene")]
+    pub(crate) fn of_separation(kind: NoteKind) -> Self {
+        Self::on_all(kind)
     }
 
     /// A remark on a pose.
@@ -140,6 +184,34 @@ impl std::fmt::Display for Note {
                  choose",
             ),
             NoteKind::CrossFaded(cross_fade) => cross_fade.fmt(f),
+            NoteKind::DepthCycle { front, behind } => write!(
+                f,
+                "pose '{pose}': '{front}' lies in front of '{behind}', and behind it by way of other parts; it is drawn behind, as frames are; divide \
+                 one of them if that is wrong"
+            ),
+            NoteKind::JointsLeft { region, to, left } => write!(
+                f,
+                "'{region}' joins several parts, and hangs on '{to}' alone; beside it, it may come apart from {}",
+                quoted(left)
+            ),
+            NoteKind::NoJoint { region } => {
+                write!(
+                    f,
+                    "'{region}' hangs on no other part, since it joins none, or where no landmark can be put in all drawings; give it an anchor if it should"
+                )
+            }
+            NoteKind::OverlapsNotSought { why } => {
+                write!(f, "parts that lie over one another were not sought: {why}")
+            }
+            NoteKind::LineDivided { landmark } => write!(
+                f,
+                "landmark '{landmark}' is a line over several parts that lie over one another, and was left out; draw it anew on each of them"
+            ),
+            NoteKind::CurvesAsPixels { poses, pixels_per_unit } => write!(
+                f,
+                "what one part hides of another cannot be filled in curves: the parts of {} were written as pixels, {pixels_per_unit:.2} a unit",
+                quoted(poses)
+            ),
             NoteKind::LooseParts { parts } => {
                 let mut listed: Vec<String> = parts.iter().take(MOST_NAMED).map(ToString::to_string).collect();
                 if parts.len() > MOST_NAMED {
@@ -153,6 +225,15 @@ impl std::fmt::Display for Note {
                 )
             }
         }
+    }
+}
+
+/// Names as a sentence lists them.
+fn quoted(names: &[String]) -> String {
+    let quoted: Vec<String> = names.iter().take(MOST_NAMED).map(|name| format!("'{name}'")).collect();
+    match names.len().checked_sub(MOST_NAMED) {
+        None | Some(0) => quoted.join(", "),
+        Some(more) => format!("{} and {more} more", quoted.join(", ")),
     }
 }
 

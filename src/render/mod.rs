@@ -38,7 +38,8 @@ pub use drawing::{
 };
 pub use error::PictureError;
 pub use frame::Frame;
-pub(crate) use overlap::OverlapPainter;
+pub use overlap::DepthOrder;
+pub(crate) use overlap::{OverlapPainter, RegionMesh, RegionPictures, Regions, cut_out};
 pub use painter::{PaintOptions, Painter, PoseTexture, Sampling};
 pub use puppet::{Puppet, PuppetFrame, PuppetLayer, PuppetLayerFrame, PuppetPose, PuppetTexture};
 pub use silhouette::Silhouette;

@@ -2,8 +2,12 @@
 //!
 //! A [`Puppet`] does not change over an animation; a [`PuppetFrame`] is what does. Meshes enclose the drawings, so what is seen is
 //! decided by the textures' alpha, not by the mesh's edge.
+//!
+//! A layer of the character that lies over itself is one layer of the puppet a region: the parts of it that can be drawn one after another, each with the triangles around
+//! it, in which it shows the same as its neighbours, and with pictures that are cut out by its edge and whole where another region hides it. The order of a frame says
+//! which of them lies in front.
 
-use super::{Camera, Sampling};
+use super::{Camera, RegionMesh, Sampling};
 use crate::math::Point;
 use crate::pose::Mapping;
 
@@ -12,7 +16,7 @@ use crate::pose::Mapping;
 pub struct Puppet {
     /// Columns and rows of the frames that positions are given in.
     pub size: [usize; 2],
-    /// In the order of the scene.
+    /// In the order of the scene; the regions of one layer follow one another.
     pub layers: Vec<PuppetLayer>,
     /// How colours are taken from the textures.
     pub sampling: Sampling,
@@ -21,7 +25,7 @@ pub struct Puppet {
 /// One layer: a mesh and its textures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PuppetLayer {
-    /// Its name.
+    /// Its name; of a region of a layer that lies over itself the layer's and the limb's, as in `body/limb 2.1`.
     pub name: String,
     /// Three vertices each; positive (x right, y down) in every pose.
     pub triangles: Vec<[usize; 3]>,
@@ -114,6 +118,30 @@ impl PuppetLayer {
                 })
                 .collect(),
             textures,
+        }
+    }
+
+    /// A region of a layer that lies over itself, from its mesh; `textures` are those of the region.
+    #[must_use]
+    pub(crate) fn of_region(
+        name: String,
+        mapping: &Mapping,
+        mesh: &RegionMesh,
+        textures: Vec<PuppetTexture>,
+        texture_of: &[usize],
+        camera: &Camera,
+    ) -> Self {
+        let whole = Self::new("", mapping, textures, texture_of, camera);
+        let pose = |pose: PuppetPose| PuppetPose {
+            positions: mesh.vertices.iter().map(|v| pose.positions[*v]).collect(),
+            ..pose
+        };
+        Self {
+            name,
+            poses: whole.poses.into_iter().map(pose).collect(),
+            textures: whole.textures,
+            triangles: mesh.triangles.clone(),
+            rings: mesh.rings.clone(),
         }
     }
 

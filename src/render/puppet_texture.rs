@@ -35,22 +35,15 @@ impl PuppetTexture {
     /// units), for frames at `frame_scale` pixels a source unit.
     #[must_use]
     pub fn new(name: &str, picture: &Picture, outline: &Outline, positions: &[Point], frame_scale: f64) -> Self {
-        let mut canvas = Canvas::of(picture);
-        while canvas.pixels_per_unit > TEXELS_A_PIXEL * frame_scale || canvas.span(positions) > MOST_TEXELS as f64 {
-            if canvas.width.max(canvas.height) == 1 {
-                break;
-            }
-            canvas = canvas.halved();
-        }
-        let mut canvas = canvas.fitted(positions);
+        let mut canvas = Canvas::under(picture, positions, frame_scale);
         canvas.clear_beyond(outline);
-        Self {
-            name: name.to_owned(),
-            width: canvas.width,
-            height: canvas.height,
-            pixels: canvas.straight(),
-            places: positions.iter().map(|p| canvas.place(*p)).collect(),
-        }
+        canvas.texture(name, positions)
+    }
+
+    /// The texture of a picture that is cut out already, as [`Self::new`] makes it of one that is not.
+    #[must_use]
+    pub(crate) fn of_cut(name: &str, picture: &Picture, positions: &[Point], frame_scale: f64) -> Self {
+        Canvas::under(picture, positions, frame_scale).texture(name, positions)
     }
 }
 
@@ -64,6 +57,28 @@ struct Canvas {
 }
 
 impl Canvas {
+    /// A picture under a mesh (steps 1 and 2).
+    fn under(picture: &Picture, positions: &[Point], frame_scale: f64) -> Self {
+        let mut canvas = Self::of(picture);
+        while canvas.pixels_per_unit > TEXELS_A_PIXEL * frame_scale || canvas.span(positions) > MOST_TEXELS as f64 {
+            if canvas.width.max(canvas.height) == 1 {
+                break;
+            }
+            canvas = canvas.halved();
+        }
+        canvas.fitted(positions)
+    }
+
+    fn texture(&self, name: &str, positions: &[Point]) -> PuppetTexture {
+        PuppetTexture {
+            name: name.to_owned(),
+            width: self.width,
+            height: self.height,
+            pixels: self.straight(),
+            places: positions.iter().map(|p| self.place(*p)).collect(),
+        }
+    }
+
     fn of(picture: &Picture) -> Self {
         let (width, height) = (picture.width.max(1), picture.height.max(1));
         let mut pixels = picture.pixels.clone();

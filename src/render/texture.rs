@@ -182,41 +182,47 @@ impl Texture {
     }
 
     fn bleed<R: AsRef<[Point]>>(&mut self, rings: &[R]) {
-        let (width, height) = (self.levels[0].width(), self.levels[0].height());
         let place = |ring: &R| -> Vec<Point> { ring.as_ref().iter().map(|p| self.to_texels(*p)).collect() };
         let polygons: Vec<Vec<Point>> = rings.iter().map(place).collect();
+        let (width, height) = (self.levels[0].width(), self.levels[0].height());
         let coverage = Coverage::of(polygons.iter().map(Vec::as_slice), width, height);
-        /// Below this a pixel is not wholly inside; above it only rounding is missing.
-        const WHOLLY: f32 = 0.999;
-        let inside = |i: usize| coverage.areas()[i] >= WHOLLY;
-        let Some(border) = nearest_seeds(width, height, |i| !inside(i)) else {
-            return;
-        };
-        let depth_squared = |i: usize| distance_squared(i, border[i], width);
-        let pixels = self.levels[0].texels_mut();
-        let original = pixels.to_vec();
-        let mut coloured = vec![false; original.len()];
-        for i in 0..original.len() {
-            if inside(i) && depth_squared(i) > BAND_PX * BAND_PX {
-                coloured[i] = true;
-                continue;
-            }
-            // Half covered pixels are kept as seeds, too: thin lines have no others.
-            if coverage.areas()[i] < 0.5 || original[i][3] == 0 {
-                continue;
-            }
-            let behind = opacity_near(&original, width, height, i);
-            let alpha = f32::from(original[i][3]);
-            if alpha >= FAINTEST * behind {
-                coloured[i] = true;
-                let gain = behind / alpha;
-                pixels[i] = original[i].map(|c| (f32::from(c) * gain).round().min(255.0) as u8);
-            }
+        bleed(self.levels[0].texels_mut(), width, &coverage);
+    }
+}
+
+/// Lets the colours of premultiplied pixels, so many in a row, reach beyond the edge of the shape that covers them as `coverage` says, at full strength (steps 2 and 3 of the
+/// [module](self)).
+pub(super) fn bleed(pixels: &mut [[u8; 4]], width: usize, coverage: &Coverage) {
+    let height = pixels.len().checked_div(width).unwrap_or(0);
+    /// Below this a pixel is not wholly inside; above it only rounding is missing.
+    const WHOLLY: f32 = 0.999;
+    let inside = |i: usize| coverage.areas()[i] >= WHOLLY;
+    let Some(border) = nearest_seeds(width, height, |i| !inside(i)) else {
+        return;
+    };
+    let depth_squared = |i: usize| distance_squared(i, border[i], width);
+    let original = pixels.to_vec();
+    let mut coloured = vec![false; original.len()];
+    for i in 0..original.len() {
+        if inside(i) && depth_squared(i) > BAND_PX * BAND_PX {
+            coloured[i] = true;
+            continue;
         }
-        if let Some(nearest) = nearest_seeds(width, height, |i| coloured[i]) {
-            for (i, seed) in nearest.iter().enumerate() {
-                pixels[i] = pixels[*seed as usize];
-            }
+        // Half covered pixels are kept as seeds, too: thin lines have no others.
+        if coverage.areas()[i] < 0.5 || original[i][3] == 0 {
+            continue;
+        }
+        let behind = opacity_near(&original, width, height, i);
+        let alpha = f32::from(original[i][3]);
+        if alpha >= FAINTEST * behind {
+            coloured[i] = true;
+            let gain = behind / alpha;
+            pixels[i] = original[i].map(|c| (f32::from(c) * gain).round().min(255.0) as u8);
+        }
+    }
+    if let Some(nearest) = nearest_seeds(width, height, |i| coloured[i]) {
+        for (i, seed) in nearest.iter().enumerate() {
+            pixels[i] = pixels[*seed as usize];
         }
     }
 }

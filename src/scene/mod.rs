@@ -12,6 +12,7 @@ mod drawings;
 mod error;
 mod file;
 mod layers;
+mod markable;
 mod named_parts;
 mod new;
 mod newcomer;
@@ -28,7 +29,7 @@ pub use error::{SceneError, SceneProblem};
 pub use layers::{LayerAnchor, SceneLayer};
 pub use new::{NewElement, NewPose, scene_text};
 pub use newcomer::Newcomer;
-pub use separated::{Separated, SeparatedDrawing, SeparatedLayer};
+pub use separated::{Separated, SeparatedAnchor, SeparatedDrawing, SeparatedLandmark, SeparatedLayer};
 pub use settings::{
     DeformedSource, DrawnSource, FrameSize, Holes, InputSettings, Layout, PoseSource, PoseSpaceSettings, Provider,
     ReadingSettings, Scene, SceneLandmark, SceneLimb, ScenePath, ScenePose,

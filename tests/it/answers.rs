@@ -67,7 +67,7 @@ fn wrong_usage_is_an_answer_too() {
     let (code, refused) = answer(&workshop, &["render", "scene.toml", "-o", "a.bmp"]);
     assert_eq!((code, &refused["error"]["kind"]), (Some(2), &"usage".into()));
     // Help is no error.
-    let output = workshop.run(&["help", "render", "--json"]);
+    let output = workshop.run(&["render", "--help", "--json"]);
     assert!(
         String::from_utf8_lossy(&output.stderr)
             .lines()

@@ -2,12 +2,13 @@
 
 use super::{
     CANONICAL, MAGIC, RuntimeAnimation, RuntimeError, RuntimeFile, RuntimeLayer, RuntimePoint, RuntimePose,
-    RuntimeTexture, RuntimeTie, VERSION, WeightField,
+    RuntimeRegion, RuntimeRegions, RuntimeTexture, RuntimeTie, VERSION, VERSION_WITH_REGIONS, WeightField,
 };
 use crate::blend::{Anchor, BlendOptions, FrameGuard, Reference, Region, SoftAnchor, Stretch};
 use crate::math::{Point, predicate};
 use crate::mesh::{MeshPoint, Topology, geometry};
 use crate::pose::PoseSet;
+use crate::render::DepthOrder;
 
 /// How far from 1 weights may sum.
 const SUM_TOLERANCE: f64 = 1e-4;
@@ -21,14 +22,19 @@ const PNG: [u8; 8] = [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n'];
 /// # Errors
 /// [`RuntimeError`] if they are no sound character.
 pub fn read_runtime(bytes: &[u8]) -> Result<RuntimeFile, RuntimeError> {
-    let mut reader = Reader { bytes, at: 0 };
+    let mut reader = Reader {
+        bytes,
+        at: 0,
+        has_regions: false,
+    };
     if reader.take(4, "the header").ok() != Some(&MAGIC) {
         return Err(RuntimeError::NotOurs);
     }
     let found = u16::from_le_bytes(reader.array("the header")?);
-    if found != VERSION {
+    if found != VERSION && found != VERSION_WITH_REGIONS {
         return Err(RuntimeError::Version { found });
     }
+    reader.has_regions = found == VERSION_WITH_REGIONS;
     let is_quantised = reader.choice(2, "precision")? == 1;
     reader.choice(1, "reserved byte")?;
     let size = [reader.word("the header")?, reader.word("the header")?];
@@ -114,6 +120,8 @@ fn hangs_in_a_circle(layer: &RuntimeLayer, layers: &[RuntimeLayer]) -> bool {
 struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,
+    /// Whether the file is of the version in which layers have them.
+    has_regions: bool,
 }
 
 impl<'a> Reader<'a> {
@@ -168,12 +176,18 @@ impl<'a> Reader<'a> {
                 }
             }
         }
-        let texture_count = self.word("the textures")? as usize;
-        self.room(texture_count, 6, "the textures")?;
-        let textures: Vec<RuntimeTexture> = (0..texture_count)
-            .map(|_| self.texture(vertices, is_quantised))
-            .collect::<Result<_, _>>()?;
-        if texture_of.iter().any(|&texture| texture >= texture_count) {
+        let textures = self.textures(vertices, is_quantised)?;
+        let regions = if self.has_regions {
+            self.regions(pose_count, vertices, is_quantised)?
+        } else {
+            None
+        };
+        let drawn = regions
+            .iter()
+            .flat_map(|all| &all.regions)
+            .map(|region| &region.textures);
+        let mut shown = drawn.chain(regions.is_none().then_some(&textures));
+        if shown.any(|textures| texture_of.iter().any(|&texture| texture >= textures.len())) {
             return self.damaged("a pose shows a texture that does not exist");
         }
         let names = own.iter().map(|&pose| poses[pose].name.clone());
@@ -195,7 +209,62 @@ impl<'a> Reader<'a> {
             options,
             tie,
             textures,
+            regions,
         })
+    }
+
+    fn textures(&mut self, vertices: usize, is_quantised: bool) -> Result<Vec<RuntimeTexture>, RuntimeError> {
+        let count = self.word("the textures")? as usize;
+        self.room(count, 6, "the textures")?;
+        (0..count).map(|_| self.texture(vertices, is_quantised)).collect()
+    }
+
+    /// The regions of a layer of so many poses and vertices.
+    fn regions(
+        &mut self,
+        pose_count: usize,
+        vertices: usize,
+        is_quantised: bool,
+    ) -> Result<Option<RuntimeRegions>, RuntimeError> {
+        let count = self.word("the regions of a layer")? as usize;
+        if count == 0 {
+            return Ok(None);
+        }
+        // A region takes some 14 bytes at least.
+        self.room(count, 14, "the regions of a layer")?;
+        let regions = (0..count).map(|_| {
+            let name = self.string()?;
+            let own_count = self.word("a region of a layer")? as usize;
+            let own = self.vertices(own_count, vertices, "a region of a layer")?;
+            if own.windows(2).any(|pair| pair[0] >= pair[1]) {
+                return self.damaged("the vertices of a region do not increase");
+            }
+            let triangle_count = self.word("a region of a layer")? as usize;
+            let corners = self.vertices(triangle_count.saturating_mul(3), vertices, "a region of a layer")?;
+            if corners.iter().any(|&corner| corner >= own_count) {
+                return self.damaged("a triangle of a region has a vertex that the region lacks");
+            }
+            Ok(RuntimeRegion {
+                name,
+                triangles: corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect(),
+                vertices: own,
+                textures: self.textures(own_count, is_quantised)?,
+            })
+        });
+        let regions = regions.collect::<Result<_, _>>()?;
+        let size = count.saturating_mul(count);
+        self.room(pose_count, size, "the order of regions")?;
+        let signs = self.take(pose_count * size, "the order of regions")?;
+        if signs.iter().any(|sign| ![0, 1, u8::MAX].contains(sign)) {
+            return self.damaged("an order of regions has another number than -1, 0 and 1");
+        }
+        let of_poses = signs
+            .chunks_exact(size)
+            .map(|signs| signs.iter().map(|sign| *sign as i8).collect());
+        match DepthOrder::new(count, of_poses.collect()) {
+            Some(order) => Ok(Some(RuntimeRegions { regions, order })),
+            None => self.damaged("an order of regions is incomplete"),
+        }
     }
 
     fn options(&mut self, pose_count: usize, vertices: usize) -> Result<BlendOptions, RuntimeError> {

@@ -78,6 +78,7 @@ fn character() -> RuntimeFile {
                         .collect(),
                 })
                 .collect(),
+            regions: None,
         })
         .collect();
     RuntimeFile {
@@ -108,29 +109,69 @@ fn character() -> RuntimeFile {
     }
 }
 
+/// The same with the first square in two halves, the second of which lies in front in the second pose.
+fn divided() -> RuntimeFile {
+    let mut file = character();
+    let layer = &mut file.layers[0];
+    let textures = std::mem::take(&mut layer.textures);
+    let region = |name: &str, vertices: [usize; 4]| RuntimeRegion {
+        name: name.to_owned(),
+        vertices: vertices.to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        textures: (textures.iter())
+            .map(|texture| RuntimeTexture {
+                places: vertices.map(|v| texture.places[v]).to_vec(),
+                ..texture.clone()
+            })
+            .collect(),
+    };
+    layer.regions = Some(RuntimeRegions {
+        regions: vec![region("trunk", [0, 1, 2, 3]), region("arm", [0, 1, 3, 4])],
+        order: DepthOrder::new(2, vec![vec![0; 4], vec![0, -1, 1, 0]]).expect("two regions"),
+    });
+    file
+}
+
 fn farthest(a: &[Point], b: &[Point]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
 }
 
 #[test]
 fn what_was_read_is_written_and_read_again_unchanged() {
-    let given = character();
-    for precision in [Precision::Single, Precision::Quantised] {
+    for (given, precision) in [
+        (character(), Precision::Single),
+        (character(), Precision::Quantised),
+        (divided(), Precision::Single),
+        (divided(), Precision::Quantised),
+    ] {
         let (bytes, read) = runtime_bytes(&given, precision).expect("a file");
         let (again, twice) = runtime_bytes(&read, precision).expect("a file");
         assert_eq!(read, twice);
         assert_eq!(bytes, again);
+        assert_eq!(bytes[4], if given.layers[0].regions.is_some() { 2 } else { 1 });
         // All but what is rounded is as it was given.
         let mut unrounded = read.clone();
         for (layer, given) in unrounded.layers.iter_mut().zip(&given.layers) {
             for (read, given) in layer.mesh.positions().iter().zip(given.mesh.positions()) {
                 assert!(farthest(read, given) <= 1.0 / 512.0 * std::f64::consts::FRAC_1_SQRT_2);
             }
-            for (read, given) in layer.textures.iter().zip(&given.textures) {
+            let drawn = |layer: &RuntimeLayer| -> Vec<RuntimeTexture> {
+                let regions = layer.regions.iter().flat_map(|regions| &regions.regions);
+                let own = layer.textures.iter();
+                own.chain(regions.flat_map(|region| &region.textures))
+                    .cloned()
+                    .collect()
+            };
+            for (read, given) in drawn(layer).iter().zip(drawn(given)) {
                 assert!(farthest(&read.places, &given.places) < 2e-5);
             }
             layer.mesh = given.mesh.clone();
             layer.textures.clone_from(&given.textures);
+            let regions = layer.regions.iter_mut().flat_map(|regions| &mut regions.regions);
+            let of_given = given.regions.iter().flat_map(|regions| &regions.regions);
+            for (read, given) in regions.zip(of_given) {
+                read.textures.clone_from(&given.textures);
+            }
         }
         assert_eq!(unrounded, given);
     }
@@ -200,6 +241,21 @@ fn unsound_characters_are_refused() {
             .to_string();
         assert!(refusal.contains(said), "{refusal}");
     }
+    type BreakRegions = fn(&mut RuntimeRegions);
+    let broken: [(BreakRegions, &str); 4] = [
+        (|r| r.regions[1].vertices[3] = 5, "vertex"),
+        (|r| r.regions[1].vertices.swap(0, 1), "increase"),
+        (|r| r.regions[0].triangles[1][2] = 4, "lacks"),
+        (|r| r.regions[0].textures.truncate(1), "texture"),
+    ];
+    for (damage, said) in broken {
+        let mut file = divided();
+        file.layers[0].regions.iter_mut().for_each(damage);
+        let refusal = runtime_bytes(&file, Precision::Single)
+            .expect_err("it is broken")
+            .to_string();
+        assert!(refusal.contains(said), "{refusal}");
+    }
     // Thinner than a step: a quantised triangle has no area.
     let mut file = character();
     let mut thin = file.layers[1].mesh.positions()[0].clone();
@@ -218,15 +274,17 @@ fn unsound_characters_are_refused() {
 fn other_files_and_later_versions_are_named() {
     assert_eq!(read_runtime(b""), Err(RuntimeError::NotOurs));
     assert_eq!(read_runtime(b"glTF\x02\0\0\0"), Err(RuntimeError::NotOurs));
-    let (mut bytes, _) = runtime_bytes(&character(), Precision::Single).expect("a file");
-    bytes[4] = 2;
-    assert_eq!(read_runtime(&bytes), Err(RuntimeError::Version { found: 2 }));
-    bytes[4] = 1;
-    for length in 0..bytes.len() {
-        assert!(read_runtime(&bytes[..length]).is_err(), "cut at {length}");
+    for character in [character(), divided()] {
+        let (mut bytes, _) = runtime_bytes(&character, Precision::Single).expect("a file");
+        let version = std::mem::replace(&mut bytes[4], 3);
+        assert_eq!(read_runtime(&bytes), Err(RuntimeError::Version { found: 3 }));
+        bytes[4] = version;
+        for length in 0..bytes.len() {
+            assert!(read_runtime(&bytes[..length]).is_err(), "cut at {length}");
+        }
+        bytes.push(0);
+        assert!(read_runtime(&bytes).is_err());
     }
-    bytes.push(0);
-    assert!(read_runtime(&bytes).is_err());
 }
 
 proptest! {
@@ -236,8 +294,9 @@ proptest! {
     fn damaged_bytes_are_read_or_refused(
         changes in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
         precision in prop::sample::select(vec![Precision::Single, Precision::Quantised]),
+        given in prop::sample::select(vec![character(), divided()]),
     ) {
-        let (mut bytes, _) = runtime_bytes(&character(), precision).expect("a file");
+        let (mut bytes, _) = runtime_bytes(&given, precision).expect("a file");
         for (place, value) in changes {
             let place = place.index(bytes.len());
             bytes[place] = value;

@@ -1,7 +1,8 @@
 //! A character -> bytes.
 
 use super::{
-    CANONICAL, MAGIC, Precision, RuntimeError, RuntimeFile, RuntimeLayer, RuntimePoint, VERSION, read_runtime,
+    CANONICAL, MAGIC, Precision, RuntimeError, RuntimeFile, RuntimeLayer, RuntimePoint, RuntimeTexture, VERSION,
+    VERSION_WITH_REGIONS, read_runtime,
 };
 use crate::blend::{Anchor, FrameGuard, Reference, Stretch};
 use crate::math::{Point, point};
@@ -13,9 +14,11 @@ use crate::mesh::MeshPoint;
 /// [`RuntimeError`] if the character is not sound, or if rounding its positions turns a triangle over: then take
 /// [`Precision::Single`].
 pub fn runtime_bytes(file: &RuntimeFile, precision: Precision) -> Result<(Vec<u8>, RuntimeFile), RuntimeError> {
+    let has_regions = file.layers.iter().any(|layer| layer.regions.is_some());
     let mut writer = Writer {
         bytes: Vec::new(),
         precision,
+        version: if has_regions { VERSION_WITH_REGIONS } else { VERSION },
     };
     writer.file(file)?;
     let read = read_runtime(&writer.bytes)?;
@@ -25,12 +28,13 @@ pub fn runtime_bytes(file: &RuntimeFile, precision: Precision) -> Result<(Vec<u8
 struct Writer {
     bytes: Vec<u8>,
     precision: Precision,
+    version: u16,
 }
 
 impl Writer {
     fn file(&mut self, file: &RuntimeFile) -> Result<(), RuntimeError> {
         self.bytes.extend(MAGIC);
-        self.bytes.extend(VERSION.to_le_bytes());
+        self.bytes.extend(self.version.to_le_bytes());
         self.bytes.extend([u8::from(self.precision == Precision::Quantised), 0]);
         self.bytes.extend(file.size.iter().flat_map(|side| side.to_le_bytes()));
         self.double(file.texture_sharpness);
@@ -83,8 +87,34 @@ impl Writer {
             self.point(&tie.other)?;
         }
         self.positions(layer);
-        self.count(layer.textures.len())?;
-        for texture in &layer.textures {
+        self.textures(&layer.textures)?;
+        if self.version < VERSION_WITH_REGIONS {
+            return Ok(());
+        }
+        let Some(regions) = &layer.regions else {
+            return self.count(0);
+        };
+        self.count(regions.regions.len())?;
+        for region in &regions.regions {
+            self.string(&region.name)?;
+            self.count(region.vertices.len())?;
+            (region.vertices.iter()).try_for_each(|vertex| self.index(*vertex, vertices))?;
+            self.count(region.triangles.len())?;
+            for vertex in region.triangles.as_flattened() {
+                // As wide as the layer's own, though there are fewer.
+                self.index(*vertex, vertices)?;
+            }
+            self.textures(&region.textures)?;
+        }
+        for sign in regions.order.in_front().iter().flatten() {
+            self.bytes.extend(sign.to_le_bytes());
+        }
+        Ok(())
+    }
+
+    fn textures(&mut self, textures: &[RuntimeTexture]) -> Result<(), RuntimeError> {
+        self.count(textures.len())?;
+        for texture in textures {
             self.string(&texture.name)?;
             self.count(texture.png.len())?;
             self.bytes.extend(&texture.png);

@@ -3,11 +3,14 @@
 use super::{Character, PipelineError};
 use crate::animation::Animation;
 use crate::export::runtime::{
-    RuntimeAnimation, RuntimeFile, RuntimeLayer, RuntimePose, RuntimeTexture, RuntimeTie, WeightField,
+    RuntimeAnimation, RuntimeFile, RuntimeLayer, RuntimePose, RuntimeRegion, RuntimeRegions, RuntimeTexture,
+    RuntimeTie, WeightField,
 };
 use crate::math::{Point, point};
 use crate::pipeline::LayerShape;
+use crate::pipeline::art::LayerArt;
 use crate::pose::PoseSet;
+use crate::render::Regions;
 use crate::render::puppet::{PuppetLayer, PuppetTexture};
 use std::error::Error;
 
@@ -35,21 +38,62 @@ impl Character {
                 at: at.clone(),
                 order: order.clone(),
             });
-        let layers = self.figure.layers.iter().zip(&puppet.layers);
+        let mut drawn = puppet.layers.as_slice();
+        let mut layers = Vec::new();
+        for (shape, art) in self.figure.layers.iter().zip(&self.art) {
+            let (own, rest) = drawn.split_at(art.regions().map_or(1, Regions::count).min(drawn.len()));
+            drawn = rest;
+            let layer = self.runtime_layer(shape, art, own, &encode);
+            layers.push(layer.map_err(|source| PipelineError::Layer {
+                layer: shape.name().to_owned(),
+                source: Box::new(source),
+            })?);
+        }
         Ok(RuntimeFile {
             size: puppet.size.map(|side| side as u32),
             texture_sharpness: self.figure.texture_sharpness,
             poses: poses.collect(),
             field: self.field()?,
             animation: self.played(animation)?,
-            layers: layers
-                .map(|(shape, layer)| {
-                    runtime_layer(shape, layer, &encode).map_err(|source| PipelineError::Layer {
-                        layer: layer.name.clone(),
-                        source: Box::new(source),
-                    })
-                })
-                .collect::<Result<_, _>>()?,
+            layers,
+        })
+    }
+
+    /// A layer that is drawn as the meshes `drawn`.
+    fn runtime_layer<E: Into<Box<dyn Error + Send + Sync>>>(
+        &self,
+        shape: &LayerShape,
+        art: &LayerArt,
+        drawn: &[PuppetLayer],
+        encode: impl Fn(&PuppetTexture) -> Result<Vec<u8>, E>,
+    ) -> Result<RuntimeLayer, PipelineError> {
+        let poses = &shape.mapping().poses;
+        let in_pixels = |positions: &Vec<Point>| positions.iter().map(|p| self.camera.to_pixels(*p)).collect();
+        let placed = poses
+            .names()
+            .iter()
+            .cloned()
+            .zip(poses.positions().iter().map(in_pixels));
+        let mesh = PoseSet::new(poses.topology().clone(), placed.collect());
+        let (textures, regions) = match (art.regions(), drawn) {
+            (Some(regions), _) => (Vec::new(), Some(runtime_regions(regions, drawn, &encode)?)),
+            (None, [layer, ..]) => (runtime_textures(&layer.textures, &encode)?, None),
+            (None, []) => (Vec::new(), None),
+        };
+        Ok(RuntimeLayer {
+            name: shape.name().to_owned(),
+            poses: shape.poses().to_vec(),
+            texture_of: art.shown_drawings().to_vec(),
+            mesh: mesh.map_err(|error| PipelineError::stage(&[], None, error))?,
+            rings: shape.mapping().rings.clone(),
+            options: shape.options().clone(),
+            tie: shape.tie.as_ref().map(|tie| RuntimeTie {
+                to: tie.to,
+                own: tie.own.anchors.clone(),
+                other: tie.other.anchors.clone(),
+            }),
+            textures,
+            regions,
         })
     }
 
@@ -102,16 +146,11 @@ impl Character {
     }
 }
 
-fn runtime_layer<E: Into<Box<dyn Error + Send + Sync>>>(
-    shape: &LayerShape,
-    layer: &PuppetLayer,
+/// The pictures of a layer or a region. `encode` makes a PNG file of one.
+fn runtime_textures<E: Into<Box<dyn Error + Send + Sync>>>(
+    textures: &[PuppetTexture],
     encode: impl Fn(&PuppetTexture) -> Result<Vec<u8>, E>,
-) -> Result<RuntimeLayer, PipelineError> {
-    let poses = layer
-        .poses
-        .iter()
-        .map(|pose| (pose.name.clone(), pose.positions.clone()));
-    let mesh = PoseSet::new(shape.mapping().poses.topology().clone(), poses.collect());
+) -> Result<Vec<RuntimeTexture>, PipelineError> {
     let texture = |texture: &PuppetTexture| {
         let size = Point::new(texture.width as f64, texture.height as f64);
         Ok(RuntimeTexture {
@@ -120,22 +159,26 @@ fn runtime_layer<E: Into<Box<dyn Error + Send + Sync>>>(
             places: texture.places.iter().map(|p| p.component_div(&size)).collect(),
         })
     };
-    Ok(RuntimeLayer {
-        name: layer.name.clone(),
-        poses: shape.poses().to_vec(),
-        texture_of: layer.poses.iter().map(|pose| pose.texture).collect(),
-        mesh: mesh.map_err(|error| PipelineError::stage(&[], None, error))?,
-        rings: layer.rings.clone(),
-        options: shape.options().clone(),
-        tie: shape.tie.as_ref().map(|tie| RuntimeTie {
-            to: tie.to,
-            own: tie.own.anchors.clone(),
-            other: tie.other.anchors.clone(),
-        }),
-        textures: layer
-            .textures
-            .iter()
-            .map(texture)
-            .collect::<Result<_, PipelineError>>()?,
+    textures.iter().map(texture).collect()
+}
+
+/// The regions of a layer, whose meshes are `drawn`.
+fn runtime_regions<E: Into<Box<dyn Error + Send + Sync>>>(
+    regions: &Regions,
+    drawn: &[PuppetLayer],
+    encode: impl Fn(&PuppetTexture) -> Result<Vec<u8>, E>,
+) -> Result<RuntimeRegions, PipelineError> {
+    let named = regions.names().iter().zip(drawn).enumerate();
+    let region = |(number, (name, layer)): (usize, (&String, &PuppetLayer))| {
+        Ok(RuntimeRegion {
+            name: name.clone(),
+            vertices: regions.mesh(number).vertices.clone(),
+            triangles: layer.triangles.clone(),
+            textures: runtime_textures(&layer.textures, &encode)?,
+        })
+    };
+    Ok(RuntimeRegions {
+        regions: named.map(region).collect::<Result<_, PipelineError>>()?,
+        order: regions.order().clone(),
     })
 }

@@ -9,6 +9,7 @@
 
 use std::collections::BTreeMap;
 
+use super::depth_order::DepthOrder;
 use crate::math::{Point, for_each_cell, point};
 use crate::pose::Mapping;
 
@@ -23,9 +24,7 @@ const JOINT_SHARE: f64 = 0.25;
 pub(super) struct Division {
     /// By triangle.
     pub(super) region_of: Vec<usize>,
-    pub(super) count: usize,
-    /// By pose, #regions x #regions: 1 where the first lies in front of the second, -1 behind it, 0 where they do not meet.
-    pub(super) in_front: Vec<Vec<i8>>,
+    pub(super) order: DepthOrder,
 }
 
 impl Division {
@@ -97,32 +96,11 @@ impl Division {
         };
         Self {
             region_of: piece_of.iter().map(|piece| numbers[region_of_piece[*piece]]).collect(),
-            in_front: in_front.iter().map(of_regions).collect(),
-            count: regions.len(),
+            order: DepthOrder {
+                count: regions.len(),
+                in_front: in_front.iter().map(of_regions).collect(),
+            },
         }
-    }
-
-    /// The regions from back to front where poses count with `weights`.
-    pub(super) fn order(&self, weights: &[f64]) -> Vec<usize> {
-        let count = self.count;
-        let mut front = vec![0.0; count * count];
-        for (known, weight) in self.in_front.iter().zip(weights).filter(|(_, weight)| **weight > 0.0) {
-            for (sum, sign) in front.iter_mut().zip(known) {
-                *sum += weight * f64::from(*sign);
-            }
-        }
-        let mut left: Vec<usize> = (0..count).collect();
-        let mut order = Vec::with_capacity(count);
-        while !left.is_empty() {
-            // What has the least behind it that is still to come; of equal ones the first.
-            let behind = |region: usize| -> f64 {
-                let others = left.iter().filter(|other| **other != region);
-                others.map(|other| front[region * count + other].max(0.0)).sum()
-            };
-            let least = (0..left.len()).min_by(|a, b| behind(left[*a]).total_cmp(&behind(left[*b])));
-            order.push(left.remove(least.unwrap_or(0)));
-        }
-        order
     }
 }
 

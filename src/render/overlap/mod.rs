@@ -5,39 +5,40 @@
 //! 1. The mesh is divided into regions that can be painted at once (`division`); in a frame they are painted from back to front.
 //! 2. Each is cut out by its own edge (`rim`): the blended outline where it ends, and a little way into its neighbours where it does not.
 //! 3. What another region hides in a drawing is shown from the drawings that show it (`pictures`).
-//! 4. Where one drawing alone is seen, nothing is hidden that it does not hide itself: the frame is that drawing, whole, and near there it becomes it.
+//! 4. Within a region what is stretched least is in front, and what is torn is not shown (`stretch`).
+//! 5. Where one drawing alone is seen, nothing is hidden that it does not hide itself: the frame is that drawing, whole, and near there it becomes it.
 
+mod depth_order;
 mod division;
 mod pictures;
+mod regions;
 mod rim;
 mod stretch;
 
 use rayon::prelude::*;
 
-use self::division::Division;
-use self::rim::{Boundary, Rim};
+pub use self::depth_order::DepthOrder;
+pub(crate) use self::pictures::{RegionPictures, cut_out};
+pub(crate) use self::regions::{RegionMesh, Regions};
 use self::stretch::{AtRest, in_order};
 use super::{Camera, Frame, PaintOptions, Painter, PoseTexture, Silhouette, Texture};
 use crate::input::Drawing;
 use crate::math::{Point, smooth_step};
 use crate::pose::Mapping;
 
-/// Rings of triangles by which a region is painted beyond its rim, and by which its rim lies beyond it.
-const PAINTED_RINGS: usize = 2;
-const RIM_RINGS: usize = 1;
-
 /// From this weight of a drawing on a frame becomes that drawing.
 const NEARLY_ALONE: f64 = 0.92;
 /// From this one on it is.
 const ALONE: f64 = 1.0 - 1e-9;
-/// What the weight of a shape counts beside that of its drawing for the order of regions.
-const FAINT: f64 = 1e-6;
 
 /// Paints frames of a figure that lies over itself.
 #[derive(Debug, Clone)]
 pub(crate) struct OverlapPainter {
-    division: Division,
-    regions: Vec<Region>,
+    regions: Regions,
+    /// One a region.
+    painters: Vec<Painter>,
+    /// By region, the triangles that it is painted with.
+    painted: Vec<Vec<usize>>,
     triangles: Vec<[usize; 3]>,
     rest: AtRest,
     /// With the drawings as they are.
@@ -60,14 +61,6 @@ struct Drawn {
     first: Point,
 }
 
-#[derive(Debug, Clone)]
-struct Region {
-    painter: Painter,
-    /// The triangles that it is painted with.
-    painted: Vec<usize>,
-    rims: Vec<Rim>,
-}
-
 impl OverlapPainter {
     /// A painter of `mapping`, seen by `camera`. Every drawing was made on one pose; `drawing_of` says which one each pose shows.
     #[must_use]
@@ -79,65 +72,30 @@ impl OverlapPainter {
         camera: Camera,
         options: PaintOptions,
     ) -> Self {
-        let division = Division::new(mapping);
-        let triangles = mapping.poses.topology().triangles();
-        let positions = mapping.poses.positions();
-        let unit = |pose: usize| -> Vec<f64> { (0..positions.len()).map(|k| f64::from(u8::from(k == pose))).collect() };
-        let shown: Vec<Vec<Vec<Point>>> = (0..positions.len())
-            .map(|pose| silhouette.at(&positions[pose], &unit(pose)))
-            .collect();
-        let open = (0..positions.len())
-            .find(|pose| mapping.overlaps.depth(*pose).is_none())
-            .unwrap_or(0);
-        let boundary = Boundary::new(&mapping.rings, &shown[open], &positions[open]);
-        let grown: Vec<Vec<usize>> = (0..division.count)
-            .map(|region| {
-                (0..triangles.len())
-                    .filter(|t| division.region_of[*t] == region)
-                    .collect()
-            })
-            .collect();
-        let rims: Vec<Vec<Rim>> = (grown.iter())
-            .map(|own| boundary.rims(&corners(triangles, &with_rings(triangles, own, RIM_RINGS))))
-            .collect();
-        let rest = AtRest::new(mapping.poses.topology(), &positions[open]);
-        let stretched: Vec<Vec<f64>> = positions.iter().map(|pose| rest.stretches(pose)).collect();
+        let regions = Regions::new(mapping, &silhouette);
         let samples = camera.scale() * options.supersample.clamp(1, PaintOptions::MOST_SAMPLES) as f64;
-        let pictures = pictures::Pictures {
-            mapping,
-            division: &division,
-            drawings,
-            rims: &rims,
-            shown: &shown,
-            hidden: Vec::new(),
-        }
-        .with_hidden();
-        let regions = (0..division.count)
+        let pictures = RegionPictures::new(mapping, &regions, drawings);
+        let painters = (0..regions.count())
             .into_par_iter()
             .map(|region| {
-                let painted = with_rings(triangles, &grown[region], PAINTED_RINGS);
                 let textures = (drawings.iter().enumerate())
-                    .map(|(drawing, (_, drawn_on))| {
-                        let (picture, rims) = pictures.of(region, drawing, &in_order(&painted, &stretched[*drawn_on]));
-                        PoseTexture {
-                            texture: Texture::within(&picture, &rims, samples),
-                            drawn_on: *drawn_on,
-                        }
+                    .map(|(drawing, (_, drawn_on))| PoseTexture {
+                        texture: Texture::within(
+                            &pictures.of(region, drawing),
+                            &regions.rims_at(region, *drawn_on, mapping),
+                            samples,
+                        ),
+                        drawn_on: *drawn_on,
                     })
                     .collect();
-                let painter = Painter::new(
+                Painter::new(
                     mapping,
                     textures,
                     drawing_of.to_vec(),
                     silhouette.clone(),
                     camera,
                     options,
-                );
-                Region {
-                    painter,
-                    painted,
-                    rims: rims[region].clone(),
-                }
+                )
             })
             .collect();
         let textures = (drawings.iter())
@@ -147,13 +105,15 @@ impl OverlapPainter {
             })
             .collect();
         let shown = drawing_of.to_vec();
-        let whole = Painter::new(mapping, textures, shown, silhouette.clone(), camera, options);
+        let (topology, positions) = (mapping.poses.topology(), mapping.poses.positions());
         Self {
-            division,
-            regions,
-            triangles: triangles.to_vec(),
-            rest,
-            whole,
+            painters,
+            painted: (0..regions.count())
+                .map(|region| regions.painted_numbers(region, mapping))
+                .collect(),
+            triangles: topology.triangles().to_vec(),
+            rest: AtRest::new(topology, &positions[regions.open_pose()]),
+            whole: Painter::new(mapping, textures, shown, silhouette.clone(), camera, options),
             drawn: (drawings.iter())
                 .map(|(drawing, pose)| Drawn {
                     pose: *pose,
@@ -164,9 +124,16 @@ impl OverlapPainter {
                 })
                 .collect(),
             drawing_of: drawing_of.to_vec(),
+            regions,
             silhouette,
             camera,
         }
+    }
+
+    /// The regions that it paints.
+    #[must_use]
+    pub(crate) fn regions(&self) -> &Regions {
+        &self.regions
     }
 
     /// The frame of the figure whose #vertices positions are `positions`, as of [`Painter::paint`].
@@ -182,17 +149,14 @@ impl OverlapPainter {
             return self.whole.paint_patch(seen, &self.triangles, rings.collect());
         }
         let stretches = self.rest.stretches(positions);
+        let shown = |painted: &[usize]| -> Vec<[usize; 3]> {
+            let order = in_order(painted, &stretches);
+            order.iter().map(|t| self.triangles[*t]).collect()
+        };
         let mut frame: Option<Frame> = None;
-        // Where no drawing of a pose that lies over itself is seen, its shape may count all the same.
-        let counts = texture_weights
-            .iter()
-            .zip(weights)
-            .map(|(seen, own)| seen + FAINT * own.max(0.0));
-        for region in self.division.order(&counts.collect::<Vec<_>>()) {
-            let Region { painter, painted, rims } = &self.regions[region];
-            let shown = corners(&self.triangles, &in_order(painted, &stretches));
-            let within: Vec<Vec<Point>> = rims.iter().map(|rim| rim.at(&rings, positions)).collect();
-            let own = painter.paint_patch(seen, &shown, within);
+        for region in self.regions.order().from_back_to_front(weights, texture_weights) {
+            let within = self.regions.rims_in(region, &rings, positions);
+            let own = self.painters[region].paint_patch(seen, &shown(&self.painted[region]), within);
             match &mut frame {
                 None => frame = Some(own),
                 Some(frame) => frame.put_over(&own, 1.0),
@@ -204,8 +168,7 @@ impl OverlapPainter {
         });
         if weight > NEARLY_ALONE {
             let all: Vec<usize> = (0..self.triangles.len()).collect();
-            let shown = corners(&self.triangles, &in_order(&all, &stretches));
-            let whole = self.whole.paint_patch(seen, &shown, rings);
+            let whole = self.whole.paint_patch(seen, &shown(&all), rings);
             frame.mix(&whole, smooth_step(weight, NEARLY_ALONE, 1.0));
         }
         frame
@@ -229,24 +192,4 @@ impl OverlapPainter {
         let shape = weights.get(drawn.pose).copied().unwrap_or(0.0);
         (most, seen[most].min(shape))
     }
-}
-
-/// Some triangles and those around them, in order.
-fn with_rings(triangles: &[[usize; 3]], own: &[usize], rings: usize) -> Vec<usize> {
-    let mut is_in = vec![false; triangles.len()];
-    own.iter().for_each(|t| is_in[*t] = true);
-    let most = triangles.iter().flatten().max().map_or(0, |v| v + 1);
-    for _ in 0..rings {
-        let mut touched = vec![false; most];
-        let inside = (0..triangles.len()).filter(|t| is_in[*t]);
-        inside.flat_map(|t| triangles[t]).for_each(|v| touched[v] = true);
-        for (t, triangle) in triangles.iter().enumerate() {
-            is_in[t] |= triangle.iter().any(|v| touched[*v]);
-        }
-    }
-    (0..triangles.len()).filter(|t| is_in[*t]).collect()
-}
-
-fn corners(triangles: &[[usize; 3]], numbers: &[usize]) -> Vec<[usize; 3]> {
-    numbers.iter().map(|t| triangles[*t]).collect()
 }

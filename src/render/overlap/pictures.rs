@@ -7,48 +7,70 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
-use super::division::Division;
-use super::rim::Rim;
+use super::regions::Regions;
+use super::stretch::{AtRest, in_order};
 use crate::input::{Drawing, Picture};
 use crate::math::{Point, for_each_cell};
+use crate::outline::Outline;
 use crate::pose::Mapping;
 use crate::render::coverage::Coverage;
+use crate::render::nearest_seed::nearest_seeds;
+use crate::render::texture::bleed;
 
+/// A pixel is wholly covered from here on; only rounding is missing.
+const WHOLLY: f32 = 0.999;
 /// By how much more than what lies in front is cut out, as a fraction of the drawing's diagonal: half a line.
 const CUT_WIDER: f64 = 0.004;
 
-pub(super) struct Pictures<'a> {
-    pub(super) mapping: &'a Mapping,
-    pub(super) division: &'a Division,
+/// What the regions of a figure show in its drawings.
+pub(crate) struct RegionPictures<'a> {
+    mapping: &'a Mapping,
+    regions: &'a Regions,
     /// With the poses that they are drawn on.
-    pub(super) drawings: &'a [(&'a Drawing, usize)],
-    /// By region.
-    pub(super) rims: &'a [Vec<Rim>],
-    /// By pose, the rings of its silhouette.
-    pub(super) shown: &'a [Vec<Vec<Point>>],
-    /// By region and drawing, once [`Self::with_hidden`] has found it: by pixel, whether something lies in front; `None` where nothing does anywhere.
-    pub(super) hidden: Vec<Vec<Option<Vec<bool>>>>,
+    drawings: &'a [(&'a Drawing, usize)],
+    /// By region and drawing, by pixel, whether something lies in front; `None` where nothing does anywhere.
+    hidden: Vec<Vec<Option<Vec<bool>>>>,
+    /// By drawing, how much its pose stretches every triangle.
+    stretches: Vec<Vec<f64>>,
 }
 
-impl Pictures<'_> {
-    /// Finds what is hidden of every region in every drawing.
-    pub(super) fn with_hidden(mut self) -> Self {
+impl<'a> RegionPictures<'a> {
+    /// Every drawing was made on one pose. What is hidden of every region in every drawing is found at once.
+    #[must_use]
+    pub(crate) fn new(mapping: &'a Mapping, regions: &'a Regions, drawings: &'a [(&'a Drawing, usize)]) -> Self {
+        let positions = mapping.poses.positions();
+        let rest = AtRest::new(mapping.poses.topology(), &positions[regions.open_pose()]);
+        let pictures = Self {
+            mapping,
+            regions,
+            drawings,
+            hidden: Vec::new(),
+            stretches: (drawings.iter())
+                .map(|(_, pose)| rest.stretches(&positions[*pose]))
+                .collect(),
+        };
         let of_region = |region: usize| {
-            (0..self.drawings.len())
-                .map(|drawing| self.found_hidden(region, drawing))
+            (0..drawings.len())
+                .map(|drawing| pictures.found_hidden(region, drawing))
                 .collect()
         };
-        let hidden = (0..self.division.count).into_par_iter().map(of_region).collect();
-        self.hidden = hidden;
-        self
+        let hidden = (0..regions.count()).into_par_iter().map(of_region).collect();
+        Self { hidden, ..pictures }
     }
 
-    /// A region's picture of a drawing, and its rims there in source units; `painted` are the triangles that it is painted with.
-    pub(super) fn of(&self, region: usize, drawing: usize, painted: &[usize]) -> (Cow<'_, Picture>, Vec<Vec<Point>>) {
+    /// A region's picture of a drawing cut out by the region's edge: what a frame at the drawing's pose shows of it where nothing lies in front.
+    #[must_use]
+    pub(crate) fn cut(&self, region: usize, drawing: usize) -> Picture {
+        let mut picture = self.of(region, drawing).into_owned();
+        cut(&mut picture, &self.coverage(region, drawing));
+        picture
+    }
+
+    /// A region's picture of a drawing; beyond the region it shows whatever the drawing does.
+    pub(super) fn of(&self, region: usize, drawing: usize) -> Cow<'_, Picture> {
         let (of, pose) = self.drawings[drawing];
-        let rims = self.rims_at(region, pose);
         let Some(hidden) = &self.hidden[region][drawing] else {
-            return (Cow::Borrowed(&of.picture), rims);
+            return Cow::Borrowed(&of.picture);
         };
         let mut picture = of.picture.clone();
         for (pixel, _) in picture.pixels.iter_mut().zip(hidden).filter(|(_, hidden)| **hidden) {
@@ -60,8 +82,9 @@ impl Pictures<'_> {
         let triangles = self.mapping.poses.topology().triangles();
         let positions = self.mapping.poses.positions();
         let size = [picture.width, picture.height];
+        let painted = self.regions.painted_numbers(region, self.mapping);
         // What is painted last is seen.
-        for &t in painted.iter().rev() {
+        for t in in_order(&painted, &self.stretches[drawing]).into_iter().rev() {
             let corners = triangles[t].map(|v| picture.to_pixels(positions[pose][v]));
             for_each_cell(corners, size, |pixel, [u, v]| {
                 if !hidden[pixel] || picture.pixels[pixel] != [0; 4] {
@@ -83,29 +106,49 @@ impl Pictures<'_> {
                 }
             });
         }
-        (Cow::Owned(picture), rims)
+        Self::go_on(&mut picture, hidden, &self.coverage(region, drawing));
+        Cow::Owned(picture)
     }
 
-    fn rims_at(&self, region: usize, pose: usize) -> Vec<Vec<Point>> {
-        let positions = &self.mapping.poses.positions()[pose];
-        self.rims[region]
-            .iter()
-            .map(|rim| rim.at(&self.shown[pose], positions))
-            .collect()
+    /// Lets the nearest colours of a region go on where something hides it and no drawing shows it.
+    fn go_on(picture: &mut Picture, hidden: &[bool], covered: &Coverage) {
+        let is_blank = |pixels: &[[u8; 4]], k: usize| hidden[k] && pixels[k] == [0; 4];
+        let blank: Vec<usize> = (0..hidden.len())
+            .filter(|k| covered.areas()[*k] > 0.0 && is_blank(&picture.pixels, *k))
+            .collect();
+        if blank.is_empty() {
+            return;
+        }
+        let nearest = nearest_seeds(picture.width, picture.height, |k| {
+            covered.areas()[k] >= WHOLLY && picture.pixels[k][3] == u8::MAX
+        });
+        if let Some(nearest) = nearest {
+            for k in blank {
+                picture.pixels[k] = picture.pixels[nearest[k] as usize];
+            }
+        }
+    }
+
+    /// How much of each pixel of a drawing a region covers.
+    fn coverage(&self, region: usize, drawing: usize) -> Coverage {
+        let (of, pose) = self.drawings[drawing];
+        let to_pixels =
+            |ring: Vec<Point>| -> Vec<Point> { ring.into_iter().map(|p| of.picture.to_pixels(p)).collect() };
+        let rims = self.regions.rims_at(region, pose, self.mapping).into_iter();
+        let rings: Vec<Vec<Point>> = rims.map(to_pixels).collect();
+        Coverage::of(rings.iter().map(Vec::as_slice), of.picture.width, of.picture.height)
     }
 
     /// By pixel of a drawing, whether something lies in front of the region there; `None` if nothing does anywhere.
     fn found_hidden(&self, region: usize, drawing: usize) -> Option<Vec<bool>> {
         let (of, pose) = self.drawings[drawing];
-        let count = self.division.count;
-        let in_front = (0..count).filter(|other| self.division.in_front[pose][other * count + region] > 0);
+        let order = self.regions.order();
+        let count = order.region_count();
+        let in_front = (0..count).filter(|other| order.in_front()[pose][other * count + region] > 0);
         let (width, height) = (of.picture.width, of.picture.height);
         let mut hidden: Option<Vec<bool>> = None;
         for other in in_front {
-            let rings: Vec<Vec<Point>> = (self.rims_at(other, pose).into_iter())
-                .map(|ring| ring.into_iter().map(|p| of.picture.to_pixels(p)).collect())
-                .collect();
-            let coverage = Coverage::of(rings.iter().map(Vec::as_slice), width, height);
+            let coverage = self.coverage(other, drawing);
             let hidden = hidden.get_or_insert_with(|| vec![false; width * height]);
             for (hidden, area) in hidden.iter_mut().zip(coverage.areas()) {
                 *hidden |= *area > 0.0;
@@ -113,6 +156,24 @@ impl Pictures<'_> {
         }
         let wider = (CUT_WIDER * of.outline.diagonal() * of.picture.pixels_per_unit).round() as usize;
         hidden.map(|hidden| widened(&hidden, width, wider))
+    }
+}
+
+/// A picture cut out by its outline: what a frame at its pose shows.
+#[must_use]
+pub(crate) fn cut_out(picture: &Picture, outline: &Outline) -> Picture {
+    let coverage = Coverage::of_outline(outline, |p| picture.to_pixels(p), picture.width, picture.height);
+    let mut picture = picture.clone();
+    cut(&mut picture, &coverage);
+    picture
+}
+
+/// Cuts a picture out by what is covered, with colours at full strength up to the edge.
+fn cut(picture: &mut Picture, coverage: &Coverage) {
+    picture.pixels.resize(picture.width * picture.height, [0; 4]);
+    bleed(&mut picture.pixels, picture.width, coverage);
+    for (pixel, area) in picture.pixels.iter_mut().zip(coverage.areas()) {
+        *pixel = pixel.map(|channel| (f32::from(channel) * area).round() as u8);
     }
 }
 

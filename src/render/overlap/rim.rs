@@ -2,7 +2,7 @@
 //!
 //! A region reaches a little way into its neighbours, so that no seam shows between them: both show the same there.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::math::Point;
 use crate::mesh::directed_edges;
@@ -62,22 +62,7 @@ impl Boundary {
 
     /// The rims of a set of triangles.
     pub(super) fn rims(&self, triangles: &[[usize; 3]]) -> Vec<Rim> {
-        let mut next: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        let directed: std::collections::BTreeSet<(usize, usize)> =
-            triangles.iter().flat_map(|t| directed_edges(*t)).collect();
-        for &(a, b) in directed.iter().filter(|(a, b)| !directed.contains(&(*b, *a))) {
-            next.entry(a).or_default().push(b);
-        }
-        let mut rims = Vec::new();
-        while let Some((&start, _)) = next.iter().find(|(_, ends)| !ends.is_empty()) {
-            let (mut loop_, mut at) = (Vec::new(), start);
-            while let Some(end) = next.get_mut(&at).and_then(Vec::pop) {
-                loop_.push((at, end));
-                at = end;
-            }
-            rims.push(self.rim(&loop_));
-        }
-        rims
+        boundary_loops(triangles).iter().map(|edges| self.rim(edges)).collect()
     }
 
     fn rim(&self, edges: &[(usize, usize)]) -> Rim {
@@ -102,6 +87,25 @@ impl Boundary {
         }
         Rim { nodes }
     }
+}
+
+/// The edges of a set of triangles that have none on the other side, loop by loop; a loop may meet a vertex twice.
+pub(super) fn boundary_loops(triangles: &[[usize; 3]]) -> Vec<Vec<(usize, usize)>> {
+    let mut next: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    let directed: BTreeSet<(usize, usize)> = triangles.iter().flat_map(|t| directed_edges(*t)).collect();
+    for &(a, b) in directed.iter().filter(|(a, b)| !directed.contains(&(*b, *a))) {
+        next.entry(a).or_default().push(b);
+    }
+    let mut loops = Vec::new();
+    while let Some((&start, _)) = next.iter().find(|(_, ends)| !ends.is_empty()) {
+        let (mut loop_, mut at) = (Vec::new(), start);
+        while let Some(end) = next.get_mut(&at).and_then(Vec::pop) {
+            loop_.push((at, end));
+            at = end;
+        }
+        loops.push(loop_);
+    }
+    loops
 }
 
 /// By vertex of a ring of the mesh, the row of the silhouette beside it, in order around the ring.
