@@ -79,7 +79,7 @@ pub enum NoteKind {
         /// What else it joins.
         left: Vec<String>,
     },
-    /// A part that lies over others joins none of them, or where no landmark can be put in all drawings, and hangs on nothing.
+    /// A part that lies over others joins none of them, and hangs on nothing.
     NoJoint {
         /// Its name.
         region: String,
@@ -197,7 +197,7 @@ impl std::fmt::Display for Note {
             NoteKind::NoJoint { region } => {
                 write!(
                     f,
-                    "'{region}' hangs on no other part, since it joins none, or where no landmark can be put in all drawings; give it an anchor if it should"
+                    "'{region}' joins no other part, and hangs on none; give it an anchor if it should"
                 )
             }
             NoteKind::OverlapsNotSought { why } => {

@@ -5,16 +5,16 @@ use crate::math::{Point, point};
 use crate::outline::ArcLength;
 
 /// On the outline is what is no farther from it than this, as a fraction of the figure's diagonal: less than what a landmark may be off.
-const ON: f64 = 0.02;
+const ON: f64 = 0.025;
 /// Inside is what is this deep inside at least: more than what makes a landmark an inner one.
-const INSIDE: f64 = 0.015;
+const INSIDE: f64 = 0.012;
 
-/// Where a place is on a figure.
+/// Where a place is on figures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
     OnOutline,
     Inside,
-    /// Between both, at a hole, or outside.
+    /// On the outline of one and not of another, at a hole, or outside.
     Unclear,
 }
 
@@ -49,27 +49,30 @@ impl<'a> Figure<'a> {
         })
     }
 
-    /// Where a place of the drawing, in source units, is.
-    pub(super) fn place(&self, place: Point) -> Place {
+    /// Whether a place of the drawing, in source units, is on the outline, and whether it is inside; both may be.
+    fn is_on_and_inside(&self, place: Point) -> [bool; 2] {
         let p = self.picture.to_pixels(place);
         let away = |ring: &ArcLength| (ring.at(ring.nearest(p).0) - p).norm() / self.diagonal;
-        let near_others = self.others.iter().any(|ring| away(ring) < INSIDE + ON);
-        match away(&self.outer) {
-            outer if outer < ON && !near_others => Place::OnOutline,
-            outer if outer > INSIDE.max(ON) && !near_others && (self.contains)(p) => Place::Inside,
-            _ => Place::Unclear,
+        if self.others.iter().any(|ring| away(ring) < ON) {
+            return [false; 2];
         }
+        let outer = away(&self.outer);
+        [outer < ON, outer > INSIDE && (self.contains)(p)]
     }
 }
 
 /// Where a landmark is that has these places on these figures, if that is the same on all of them.
 pub(super) fn same_place<'a>(places: impl IntoIterator<Item = (&'a Figure<'a>, Point)>) -> Place {
-    let mut places = places.into_iter().map(|(figure, place)| figure.place(place));
-    let first = places.next().unwrap_or(Place::Unclear);
-    if places.all(|place| place == first) {
-        first
-    } else {
-        Place::Unclear
+    let mut all = None;
+    for (figure, place) in places {
+        let [on, inside] = figure.is_on_and_inside(place);
+        let [so_far_on, so_far_inside] = all.unwrap_or([true; 2]);
+        all = Some([so_far_on && on, so_far_inside && inside]);
+    }
+    match all {
+        Some([true, _]) => Place::OnOutline,
+        Some([false, true]) => Place::Inside,
+        _ => Place::Unclear,
     }
 }
 
@@ -93,14 +96,15 @@ mod tests {
             pixels_per_unit: 2.0,
         };
         let figure = Figure::of(&picture).expect("a figure");
-        let place = |x: f64, y: f64| figure.place(Point::new(10.0 + x / 2.0, 10.0 + y / 2.0));
+        let at = |x: f64, y: f64| (&figure, Point::new(10.0 + x / 2.0, 10.0 + y / 2.0));
+        let place = |x: f64, y: f64| same_place([at(x, y)]);
         assert_eq!(place(10.5, 50.0), Place::OnOutline);
         assert_eq!(place(30.0, 30.0), Place::Inside);
-        assert_eq!(place(13.0, 50.0), Place::Unclear);
         assert_eq!(place(60.5, 70.0), Place::Unclear);
         assert_eq!(place(2.0, 2.0), Place::Unclear);
-        let both = [(10.5, 50.0), (30.0, 30.0)].map(|(x, y)| (&figure, Point::new(10.0 + x / 2.0, 10.0 + y / 2.0)));
-        assert_eq!(same_place([both[0], both[0]]), Place::OnOutline);
-        assert_eq!(same_place(both), Place::Unclear);
+        assert_eq!(same_place([at(10.5, 50.0), at(50.0, 89.0)]), Place::OnOutline);
+        assert_eq!(same_place([at(10.5, 50.0), at(30.0, 30.0)]), Place::Unclear);
+        // A little inside of one outline and deep inside another is inside of both.
+        assert_eq!(same_place([at(12.0, 50.0), at(30.0, 30.0)]), Place::Inside);
     }
 }

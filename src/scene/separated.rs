@@ -115,10 +115,7 @@ impl Scene {
         let taken: Vec<&str> = (self.landmarks.iter().map(|landmark| landmark.name.as_str()))
             .chain(self.paths.iter().map(|path| path.name.as_str()))
             .collect();
-        let (layers, without_joint) = parts.layers(&taken).map_err(|error| self.refusal(error))?;
-        for region in without_joint {
-            notes.push(Note::of_separation(NoteKind::NoJoint { region }));
-        }
+        let layers = parts.layers(&taken).map_err(|error| self.refusal(error))?;
         let divided_lines = parts.divided_lines();
         for line in &divided_lines {
             notes.push(Note::of_separation(NoteKind::LineDivided { landmark: line.clone() }));
@@ -234,12 +231,11 @@ impl<'a> Parts<'a> {
         orders.into_iter().enumerate().map(of_pose).collect()
     }
 
-    /// The new layers, and the names of those whose joint can be no landmark; `taken` are the names that landmarks have already.
-    fn layers(&self, taken: &[&str]) -> Result<(Vec<SeparatedLayer>, Vec<String>), crate::pipeline::PipelineError> {
+    /// The new layers; `taken` are the names that landmarks have already.
+    fn layers(&self, taken: &[&str]) -> Result<Vec<SeparatedLayer>, crate::pipeline::PipelineError> {
         let mut drawings = self.drawings()?;
         let mut landmarks: Vec<String> = taken.iter().map(|name| (*name).to_owned()).collect();
         let mut layers = Vec::new();
-        let mut without_joint = Vec::new();
         for (k, &(layer, region)) in self.order.iter().enumerate() {
             let own_drawings = std::mem::take(&mut drawings[k]);
             let figures: Vec<Option<Figure<'_>>> = if region.is_some() {
@@ -269,10 +265,6 @@ impl<'a> Parts<'a> {
             let regions = self.regions[layer].as_ref().zip(region);
             let anchor = regions.and_then(|(regions, region)| {
                 let joint = regions.joint(region)?;
-                if place(&joint.at) == Place::Unclear {
-                    without_joint.push(self.names[k].clone());
-                    return None;
-                }
                 Some(SeparatedAnchor {
                     to: self.new_layer(layer, Some(joint.to)),
                     landmark: add(format!("{} joint", self.names[k]), &joint.at),
@@ -294,7 +286,7 @@ impl<'a> Parts<'a> {
                 anchor,
             });
         }
-        Ok((layers, without_joint))
+        Ok(layers)
     }
 
     /// By new layer and pose.
