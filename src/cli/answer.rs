@@ -7,7 +7,6 @@ use std::fmt::Debug;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-use inbetween::math::Point;
 use inbetween::pipeline::{Note, PipelineError};
 use inbetween::scene::{SceneBuildError, SceneError, ShapeNote};
 use serde_json::{Map, Value, json};
@@ -188,19 +187,19 @@ fn of_error(error: &anyhow::Error, text: &str) -> Value {
 
 fn of_pipeline(error: &PipelineError, put: &mut impl FnMut(&str, Value)) {
     let within = error.within_layer();
-    put("kind", json!(kind_of(&within as &dyn Debug)));
+    put("kind", json!(kind_of(within)));
     put("layer", json!(error.layer()));
     put("pose", json!(error.pose()));
     put("landmark", json!(error.landmark()));
     put("part", json!(error.limb()));
-    put("place", json!(error.place().map(|p: Point| [p.x, p.y])));
+    put("place", json!(error.place().map(|p| [p.x, p.y])));
     if let Some(source) = within.source() {
         put("cause", json!(source.to_string()));
     }
 }
 
 /// The name of a value's variant, in small letters with dashes.
-fn kind_of(value: &(impl Debug + ?Sized)) -> String {
+fn kind_of(value: &impl Debug) -> String {
     let debug = format!("{value:?}");
     let name = debug.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
     let mut kind = String::new();

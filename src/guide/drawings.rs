@@ -146,7 +146,8 @@
 //!
 //! `inbetween map` writes which poses lie over themselves (`immersed`), how near every
 //! triangle is there, and the limbs. What no drawing shows apart cannot be found, nor what lies within the open drawing's own silhouette: draw one pose with the arms away from
-//! the body. Such a character is painted as pixels, its SVG drawings too; pixel art (`sampling = "nearest"`) is painted without the order of depth; Spine, glTF and the runtime file have its mesh without the order of depth.
+//! the body. Such a character is painted as pixels, its SVG drawings too; pixel art (`sampling = "nearest"`) is painted without the order of depth. Spine, glTF and the runtime file keep the order
+//! ([`exports`](super::exports#meshes-of-figures-that-lie-over-themselves)).
 //!
 //! # Holes
 //!

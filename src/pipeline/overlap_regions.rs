@@ -197,19 +197,19 @@ impl OverlapRegions<'_> {
         points.into_iter().map(of_drawings).collect()
     }
 
-    /// The pictures of all regions in one drawing of the layer, counted like its drawn poses, on a grid of the drawing as it is in its file.
+    /// By drawing of the layer, counted like its drawn poses, the pictures of all regions, each drawing's on its own of `grids`, which are of drawings as they are in their files.
     #[must_use]
-    pub fn pictures(&self, drawing: usize, grid: &PixelGrid) -> Vec<Picture> {
+    pub fn pictures(&self, grids: &[PixelGrid]) -> Vec<Vec<Picture>> {
         let drawn: Vec<(&Drawing, usize)> = (self.drawings.iter().map(Arc::as_ref))
             .zip(self.layer.drawn_poses())
             .collect();
-        let Some(pose) = self.layer.drawn().nth(drawing) else {
-            return Vec::new();
-        };
         let pictures = RegionPictures::new(self.mapping, &self.regions, &drawn);
-        (0..self.regions.count())
-            .map(|region| grid.filled(&pictures.cut(region, drawing), pose))
-            .collect()
+        let of_drawing = |(drawing, (pose, grid)): (usize, (&DrawnPose, &PixelGrid))| {
+            (0..self.regions.count())
+                .map(|region| grid.filled(&pictures.cut(region, drawing), pose))
+                .collect()
+        };
+        self.layer.drawn().zip(grids).enumerate().map(of_drawing).collect()
     }
 
     /// Whether a pose of the layer lies over itself.

@@ -99,6 +99,21 @@ pub struct Painter {
     options: PaintOptions,
 }
 
+/// By drawing of `count`, the sum of the weights of the poses that show it; `drawing_of` has the drawing of every pose.
+pub(super) fn weights_of_drawings(
+    count: usize,
+    drawing_of: impl IntoIterator<Item = usize>,
+    weights: &[f64],
+) -> Vec<f64> {
+    let mut sums = vec![0.0; count];
+    for (drawing, weight) in drawing_of.into_iter().zip(weights) {
+        if let Some(sum) = sums.get_mut(drawing) {
+            *sum += weight;
+        }
+    }
+    sums
+}
+
 /// A texture bound to the mesh.
 #[derive(Debug, Clone)]
 struct OnMesh {
@@ -310,12 +325,7 @@ impl Painter {
 
     /// The textures that count, with their weights.
     fn counting(&self, texture_weights: &[f64]) -> Vec<(&OnMesh, f64)> {
-        let mut of_textures = vec![0.0; self.textures.len()];
-        for (texture, weight) in self.texture_of.iter().zip(texture_weights) {
-            if let Some(sum) = of_textures.get_mut(*texture) {
-                *sum += weight;
-            }
-        }
+        let of_textures = weights_of_drawings(self.textures.len(), self.texture_of.iter().copied(), texture_weights);
         let total: f64 = of_textures.iter().filter(|weight| **weight > 0.0).sum();
         self.textures
             .iter()

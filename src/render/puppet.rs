@@ -7,6 +7,7 @@
 //! it, in which it shows the same as its neighbours, and with pictures that are cut out by its edge and whole where another region hides it. The order of a frame says
 //! which of them lies in front.
 
+use super::painter::weights_of_drawings;
 use super::{Camera, RegionMesh, Sampling};
 use crate::math::Point;
 use crate::pose::Mapping;
@@ -148,12 +149,8 @@ impl PuppetLayer {
     /// What the layer looks like with its vertices at `positions`, in source units, and `weights` of its poses for textures.
     #[must_use]
     pub fn frame(&self, positions: &[Point], weights: &[f64], opacity: f64, camera: &Camera) -> PuppetLayerFrame {
-        let mut textures = vec![0.0; self.textures.len()];
-        for (pose, weight) in self.poses.iter().zip(weights) {
-            if let Some(sum) = textures.get_mut(pose.texture) {
-                *sum += weight;
-            }
-        }
+        let texture_of = self.poses.iter().map(|pose| pose.texture);
+        let textures = weights_of_drawings(self.textures.len(), texture_of, weights);
         PuppetLayerFrame {
             positions: positions.iter().map(|p| camera.to_pixels(*p)).collect(),
             textures,

@@ -6,17 +6,6 @@ use crate::outline::ArcLength;
 
 /// On the outline is what is no farther from it than this, as a fraction of the figure's diagonal: less than what a landmark may be off.
 const ON: f64 = 0.025;
-/// Inside is what is this deep inside at least: more than what makes a landmark an inner one.
-const INSIDE: f64 = 0.012;
-
-/// Where a place is on figures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
-    OnOutline,
-    Inside,
-    /// On the outline of one and not of another, at a hole, or outside.
-    Unclear,
-}
 
 /// A picture's figure, as it is read again.
 pub(super) struct Figure<'a> {
@@ -24,7 +13,6 @@ pub(super) struct Figure<'a> {
     outer: ArcLength,
     /// Of holes and openings.
     others: Vec<ArcLength>,
-    contains: Box<dyn Fn(Point) -> bool>,
     diagonal: f64,
 }
 
@@ -45,35 +33,21 @@ impl<'a> Figure<'a> {
             outer: ArcLength::new(outline.outer()),
             others: others.collect(),
             diagonal: point::diagonal(outline.outer().points()),
-            contains: Box::new(move |p| outline.outer().contains(p)),
         })
     }
 
-    /// Whether a place of the drawing, in source units, is on the outline, and whether it is inside; both may be.
-    fn is_on_and_inside(&self, place: Point) -> [bool; 2] {
+    /// Whether a place of the drawing, in source units, is on the outer outline, and not at a hole.
+    fn is_on_outline(&self, place: Point) -> bool {
         let p = self.picture.to_pixels(place);
-        let away = |ring: &ArcLength| (ring.at(ring.nearest(p).0) - p).norm() / self.diagonal;
-        if self.others.iter().any(|ring| away(ring) < ON) {
-            return [false; 2];
-        }
-        let outer = away(&self.outer);
-        [outer < ON, outer > INSIDE && (self.contains)(p)]
+        let is_near = |ring: &ArcLength| (ring.at(ring.nearest(p).0) - p).norm() < ON * self.diagonal;
+        is_near(&self.outer) && !self.others.iter().any(is_near)
     }
 }
 
-/// Where a landmark is that has these places on these figures, if that is the same on all of them.
-pub(super) fn same_place<'a>(places: impl IntoIterator<Item = (&'a Figure<'a>, Point)>) -> Place {
-    let mut all = None;
-    for (figure, place) in places {
-        let [on, inside] = figure.is_on_and_inside(place);
-        let [so_far_on, so_far_inside] = all.unwrap_or([true; 2]);
-        all = Some([so_far_on && on, so_far_inside && inside]);
-    }
-    match all {
-        Some([true, _]) => Place::OnOutline,
-        Some([false, true]) => Place::Inside,
-        _ => Place::Unclear,
-    }
+/// Whether a landmark that has these places on these figures is on the outline of all of them; there is at least one.
+pub(super) fn are_on_outlines<'a>(places: impl IntoIterator<Item = (&'a Figure<'a>, Point)>) -> bool {
+    let mut places = places.into_iter().peekable();
+    places.peek().is_some() && places.all(|(figure, place)| figure.is_on_outline(place))
 }
 
 #[cfg(test)]
@@ -81,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_are_on_the_outline_inside_or_unclear() {
+    fn what_is_inside_at_a_hole_or_outside_of_one_figure_is_not_on_all_outlines() {
         // A square of 80 with a hole of 20, two pixels a unit, from (10, 10).
         let pixels = (0..100 * 100).map(|k| {
             let [x, y] = [k % 100, k / 100];
@@ -97,14 +71,13 @@ mod tests {
         };
         let figure = Figure::of(&picture).expect("a figure");
         let at = |x: f64, y: f64| (&figure, Point::new(10.0 + x / 2.0, 10.0 + y / 2.0));
-        let place = |x: f64, y: f64| same_place([at(x, y)]);
-        assert_eq!(place(10.5, 50.0), Place::OnOutline);
-        assert_eq!(place(30.0, 30.0), Place::Inside);
-        assert_eq!(place(60.5, 70.0), Place::Unclear);
-        assert_eq!(place(2.0, 2.0), Place::Unclear);
-        assert_eq!(same_place([at(10.5, 50.0), at(50.0, 89.0)]), Place::OnOutline);
-        assert_eq!(same_place([at(10.5, 50.0), at(30.0, 30.0)]), Place::Unclear);
-        // A little inside of one outline and deep inside another is inside of both.
-        assert_eq!(same_place([at(12.0, 50.0), at(30.0, 30.0)]), Place::Inside);
+        let is_on = |x: f64, y: f64| are_on_outlines([at(x, y)]);
+        assert!(is_on(10.5, 50.0));
+        assert!(!is_on(30.0, 30.0));
+        assert!(!is_on(60.5, 70.0));
+        assert!(!is_on(2.0, 2.0));
+        assert!(are_on_outlines([at(10.5, 50.0), at(50.0, 89.0)]));
+        assert!(!are_on_outlines([at(10.5, 50.0), at(30.0, 30.0)]));
+        assert!(!are_on_outlines([at(12.0, 50.0), at(30.0, 30.0)]));
     }
 }

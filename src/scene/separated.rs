@@ -11,7 +11,7 @@
 
 use super::SceneBuildError;
 use super::drawings::read_drawing;
-use super::markable::{Figure, Place, same_place};
+use super::markable::{Figure, are_on_outlines};
 use super::settings::Scene;
 use crate::input::{Art, Canvas, Picture};
 use crate::math::Point;
@@ -244,9 +244,9 @@ impl<'a> Parts<'a> {
                 Vec::new()
             };
             let drawn = self.spec.layers[layer].drawn_poses();
-            let place = |at: &[Point]| {
-                let on = drawn.iter().zip(at);
-                same_place(on.filter_map(|(pose, place)| Some((figures.get(*pose)?.as_ref()?, *place))))
+            let on_outline = |at: &&Vec<Point>| {
+                let on = drawn.iter().zip(*at);
+                are_on_outlines(on.filter_map(|(pose, place)| Some((figures.get(*pose)?.as_ref()?, *place))))
             };
             let mut added = Vec::new();
             let mut add = |name: String, at: &[Point]| {
@@ -271,7 +271,6 @@ impl<'a> Parts<'a> {
                 })
             });
             let edge = regions.map(|(regions, region)| regions.edge_points(region));
-            let on_outline = |at: &&Vec<Point>| place(at) == Place::OnOutline;
             for (number, at) in edge.unwrap_or_default().iter().filter(on_outline).enumerate() {
                 add(format!("{} edge {}", self.names[k], number + 1), at);
             }
@@ -294,20 +293,22 @@ impl<'a> Parts<'a> {
         let mut drawings: Vec<Vec<Option<SeparatedDrawing>>> =
             vec![vec![None; self.spec.space.poses.len()]; self.order.len()];
         for (layer, regions) in self.regions.iter().enumerate() {
-            for (drawing, pose) in self.spec.layers[layer].drawn_poses().into_iter().enumerate() {
-                let Some(drawn) = drawn_pose(&self.spec.layers[layer], pose) else {
-                    continue;
-                };
-                let grid = self.grids[pose];
-                let Some(regions) = regions else {
-                    drawings[self.new_layer(layer, None)][pose] = Some(match (self.build, grid) {
+            let drawn = self.spec.layers[layer].drawn_poses();
+            let poses = drawn.iter().zip(self.spec.layers[layer].drawn());
+            let Some(regions) = regions else {
+                for (drawing, (&pose, drawn)) in poses.enumerate() {
+                    drawings[self.new_layer(layer, None)][pose] = Some(match (self.build, self.grids[pose]) {
                         (Some(build), Some(grid)) => SeparatedDrawing::Pixels(build.cut_out(layer, drawing, &grid)?),
                         _ => self.loose(layer, pose, drawn),
                     });
-                    continue;
-                };
-                let grid = grid.unwrap_or_else(|| PixelGrid::of(&drawn.drawing.canvas, 1.0));
-                for (region, picture) in regions.pictures(drawing, &grid).into_iter().enumerate() {
+                }
+                continue;
+            };
+            let grids: Vec<PixelGrid> = poses
+                .map(|(pose, drawn)| self.grids[*pose].unwrap_or_else(|| PixelGrid::of(&drawn.drawing.canvas, 1.0)))
+                .collect();
+            for (&pose, pictures) in drawn.iter().zip(regions.pictures(&grids)) {
+                for (region, picture) in pictures.into_iter().enumerate() {
                     let new = self.new_layer(layer, Some(region));
                     drawings[new][pose] = Some(SeparatedDrawing::Pixels(picture));
                 }

@@ -5,7 +5,7 @@ use inbetween::math::Point;
 use inbetween::scene::{Scene, Separated, SeparatedLandmark, SeparatedLayer};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value};
 
-use crate::tables::{name_of, tables, tables_of};
+use crate::tables::{name_of, number_of, push_table, tables, tables_of};
 
 /// What of a pose says how its drawing is read, and in which order its limbs lie; of the pictures that are written nothing is left to be said.
 const OF_DRAWING: [&str; 11] = [
@@ -165,8 +165,7 @@ impl Grids<'_> {
     }
 
     fn count_array(&self, pose: usize, array: &mut Array) {
-        let number = |value: &Value| value.as_float().or(value.as_integer().map(|number| number as f64));
-        let numbers: Option<Vec<f64>> = array.iter().map(number).collect();
+        let numbers: Option<Vec<f64>> = array.iter().map(number_of).collect();
         match numbers.as_deref() {
             Some(&[x, y]) => *array = written_place(self.place(pose, Point::new(x, y))),
             _ => (array.iter_mut().filter_map(Value::as_array_mut)).for_each(|place| self.count_array(pose, place)),
@@ -192,25 +191,12 @@ fn add_landmark(
             at.insert(&pose.name, Value::Array(written_place(grids.place(index, *place))));
         }
     }
-    let landmarks = document
-        .entry("landmark")
-        .or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
-    match landmarks {
-        Item::ArrayOfTables(tables) => {
-            let mut table = Table::new();
-            table.insert("name", landmark.name.as_str().into());
-            table.insert("layer", layer.name.as_str().into());
-            table.insert("at", Item::Value(Value::InlineTable(at)));
-            tables.push(table);
-        }
-        Item::Value(Value::Array(values)) => {
-            let mut table = InlineTable::new();
-            table.insert("name", landmark.name.as_str().into());
-            table.insert("layer", layer.name.as_str().into());
-            table.insert("at", Value::InlineTable(at));
-            values.push(table);
-        }
-        _ => bail!("`landmark` is no list of tables"),
+    let mut table = Table::new();
+    table.insert("name", landmark.name.as_str().into());
+    table.insert("layer", layer.name.as_str().into());
+    table.insert("at", Item::Value(Value::InlineTable(at)));
+    if !push_table(document, "landmark", table) {
+        bail!("`landmark` is no list of tables");
     }
     Ok(())
 }
@@ -239,12 +225,8 @@ fn name_handles(handles: &mut Item, pose: usize, separated: &Separated) {
         .map(|layer| layer.handles[pose].iter().peekable())
         .collect();
     for handle in tables_of(handles) {
-        let from = handle.get("from").and_then(Item::as_array).map(|from| {
-            let numbers = from
-                .iter()
-                .filter_map(|v| v.as_float().or(v.as_integer().map(|v| v as f64)));
-            numbers.collect::<Vec<f64>>()
-        });
+        let from = handle.get("from").and_then(Item::as_array);
+        let from: Option<Vec<f64>> = from.map(|from| from.iter().filter_map(number_of).collect());
         let is_next = |own: &mut std::iter::Peekable<std::slice::Iter<'_, inbetween::pipeline::HandleMove>>| {
             own.peek()
                 .is_some_and(|next| from.as_deref() == Some(&[next.from.x, next.from.y]))

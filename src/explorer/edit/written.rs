@@ -2,9 +2,10 @@
 
 use inbetween::math::Point;
 use serde_json::Value as Json;
-use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, TableLike, Value};
+use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
 use crate::explorer::problem::{Problem, Refusal};
+use crate::tables::push_table;
 pub(super) use crate::tables::tables;
 
 /// What the text does not have.
@@ -34,15 +35,11 @@ pub(super) fn names(document: &mut DocumentMut, kind: &str) -> Vec<String> {
 
 /// Adds a table to `[[name]]`.
 pub(super) fn push(document: &mut DocumentMut, name: &str, table: Table) -> Result<(), Refusal> {
-    match document
-        .entry(name)
-        .or_insert(Item::ArrayOfTables(ArrayOfTables::new()))
-    {
-        Item::ArrayOfTables(tables) => tables.push(table),
-        Item::Value(Value::Array(values)) => values.push(table.into_inline_table()),
-        _ => return Err(missing(format!("list of [[{name}]]"))),
+    if push_table(document, name, table) {
+        Ok(())
+    } else {
+        Err(missing(format!("list of [[{name}]]")))
     }
-    Ok(())
 }
 
 /// Removes the table of `[[name]]` at a place.

@@ -36,6 +36,7 @@ use super::{VectorGroup, VectorNode, VectorShape};
 use crate::input::{Art, ArtElement, Placement};
 use crate::math::{Point, restricted_weights};
 use crate::pose::Mapping;
+use crate::render::painter::weights_of_drawings;
 
 /// A drawing as curves, and the pose on which it was drawn.
 #[derive(Debug, Clone)]
@@ -195,15 +196,8 @@ impl CarriedDrawing {
     /// `texture_weights` (both one a pose), from back to front, in pixels of the frame.
     #[must_use]
     pub fn frame(&self, positions: &[Point], weights: &[f64], texture_weights: &[f64]) -> Vec<VectorNode> {
-        let by_drawing = |weights: &[f64]| {
-            let mut sums = vec![0.0; self.drawing_count];
-            for (&drawing, weight) in self.drawing_of.iter().zip(weights) {
-                if let Some(sum) = sums.get_mut(drawing) {
-                    *sum += weight;
-                }
-            }
-            sums
-        };
+        let by_drawing =
+            |weights: &[f64]| weights_of_drawings(self.drawing_count, self.drawing_of.iter().copied(), weights);
         let (shape, seen) = (by_drawing(weights), by_drawing(texture_weights));
         let draw = |k: usize, opacity: f64| {
             let node = &self.nodes[k];

@@ -20,7 +20,8 @@ use rayon::prelude::*;
 pub use self::depth_order::DepthOrder;
 pub(crate) use self::pictures::{RegionPictures, cut_out};
 pub(crate) use self::regions::{RegionMesh, Regions};
-use self::stretch::{AtRest, in_order};
+use self::stretch::in_order;
+use super::painter::weights_of_drawings;
 use super::{Camera, Frame, PaintOptions, Painter, PoseTexture, Silhouette, Texture};
 use crate::input::Drawing;
 use crate::math::{Point, smooth_step};
@@ -37,10 +38,6 @@ pub(crate) struct OverlapPainter {
     regions: Regions,
     /// One a region.
     painters: Vec<Painter>,
-    /// By region, the triangles that it is painted with.
-    painted: Vec<Vec<usize>>,
-    triangles: Vec<[usize; 3]>,
-    rest: AtRest,
     /// With the drawings as they are.
     whole: Painter,
     drawn: Vec<Drawn>,
@@ -105,14 +102,9 @@ impl OverlapPainter {
             })
             .collect();
         let shown = drawing_of.to_vec();
-        let (topology, positions) = (mapping.poses.topology(), mapping.poses.positions());
+        let positions = mapping.poses.positions();
         Self {
             painters,
-            painted: (0..regions.count())
-                .map(|region| regions.painted_numbers(region, mapping))
-                .collect(),
-            triangles: topology.triangles().to_vec(),
-            rest: AtRest::new(topology, &positions[regions.open_pose()]),
             whole: Painter::new(mapping, textures, shown, silhouette.clone(), camera, options),
             drawn: (drawings.iter())
                 .map(|(drawing, pose)| Drawn {
@@ -141,22 +133,23 @@ impl OverlapPainter {
     pub(crate) fn paint(&self, positions: &[Point], weights: &[f64], texture_weights: &[f64]) -> Frame {
         let seen = (positions, weights, texture_weights);
         let rings = self.silhouette.at(positions, weights);
+        let rest = self.regions.rest();
         let (drawing, weight) = self.most_seen(weights, texture_weights);
         if weight >= ALONE {
             let drawn = &self.drawn[drawing];
             let shift = positions.first().copied().unwrap_or_default() - drawn.first;
             let rings = drawn.rings.iter().map(|ring| ring.iter().map(|p| p + shift).collect());
-            return self.whole.paint_patch(seen, &self.triangles, rings.collect());
+            return self.whole.paint_patch(seen, rest.triangles(), rings.collect());
         }
-        let stretches = self.rest.stretches(positions);
+        let stretches = rest.stretches(positions);
         let shown = |painted: &[usize]| -> Vec<[usize; 3]> {
             let order = in_order(painted, &stretches);
-            order.iter().map(|t| self.triangles[*t]).collect()
+            order.iter().map(|t| rest.triangles()[*t]).collect()
         };
         let mut frame: Option<Frame> = None;
         for region in self.regions.order().from_back_to_front(weights, texture_weights) {
             let within = self.regions.rims_in(region, &rings, positions);
-            let own = self.painters[region].paint_patch(seen, &shown(&self.painted[region]), within);
+            let own = self.painters[region].paint_patch(seen, &shown(self.regions.painted(region)), within);
             match &mut frame {
                 None => frame = Some(own),
                 Some(frame) => frame.put_over(&own, 1.0),
@@ -167,7 +160,7 @@ impl OverlapPainter {
             Frame::filled(columns, rows, [0; 4])
         });
         if weight > NEARLY_ALONE {
-            let all: Vec<usize> = (0..self.triangles.len()).collect();
+            let all: Vec<usize> = (0..rest.triangles().len()).collect();
             let whole = self.whole.paint_patch(seen, &shown(&all), rings);
             frame.mix(&whole, smooth_step(weight, NEARLY_ALONE, 1.0));
         }
@@ -176,12 +169,7 @@ impl OverlapPainter {
 
     /// The drawing that is seen most, and how far nothing else is and the shape is that which it was made on.
     fn most_seen(&self, weights: &[f64], texture_weights: &[f64]) -> (usize, f64) {
-        let mut seen = vec![0.0; self.drawn.len()];
-        for (drawing, weight) in self.drawing_of.iter().zip(texture_weights) {
-            if let Some(sum) = seen.get_mut(*drawing) {
-                *sum += weight;
-            }
-        }
+        let seen = weights_of_drawings(self.drawn.len(), self.drawing_of.iter().copied(), texture_weights);
         let most = (0..seen.len())
             .max_by(|a, b| seen[*a].total_cmp(&seen[*b]))
             .unwrap_or(0);

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use rayon::prelude::*;
 
 use super::regions::Regions;
-use super::stretch::{AtRest, in_order};
+use super::stretch::in_order;
 use crate::input::{Drawing, Picture};
 use crate::math::{Point, for_each_cell};
 use crate::outline::Outline;
@@ -39,14 +39,13 @@ impl<'a> RegionPictures<'a> {
     #[must_use]
     pub(crate) fn new(mapping: &'a Mapping, regions: &'a Regions, drawings: &'a [(&'a Drawing, usize)]) -> Self {
         let positions = mapping.poses.positions();
-        let rest = AtRest::new(mapping.poses.topology(), &positions[regions.open_pose()]);
         let pictures = Self {
             mapping,
             regions,
             drawings,
             hidden: Vec::new(),
             stretches: (drawings.iter())
-                .map(|(_, pose)| rest.stretches(&positions[*pose]))
+                .map(|(_, pose)| regions.rest().stretches(&positions[*pose]))
                 .collect(),
         };
         let of_region = |region: usize| {
@@ -82,9 +81,9 @@ impl<'a> RegionPictures<'a> {
         let triangles = self.mapping.poses.topology().triangles();
         let positions = self.mapping.poses.positions();
         let size = [picture.width, picture.height];
-        let painted = self.regions.painted_numbers(region, self.mapping);
+        let painted = self.regions.painted(region);
         // What is painted last is seen.
-        for t in in_order(&painted, &self.stretches[drawing]).into_iter().rev() {
+        for t in in_order(painted, &self.stretches[drawing]).into_iter().rev() {
             let corners = triangles[t].map(|v| picture.to_pixels(positions[pose][v]));
             for_each_cell(corners, size, |pixel, [u, v]| {
                 if !hidden[pixel] || picture.pixels[pixel] != [0; 4] {

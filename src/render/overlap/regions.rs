@@ -3,6 +3,7 @@
 use super::depth_order::DepthOrder;
 use super::division::Division;
 use super::rim::{Boundary, Rim, boundary_loops};
+use super::stretch::AtRest;
 use crate::math::{Point, point};
 use crate::mesh::geometry;
 use crate::pose::Mapping;
@@ -22,8 +23,10 @@ pub(crate) struct Regions {
     /// By triangle.
     region_of: Vec<usize>,
     open: usize,
-    /// By region, its own triangles.
-    own: Vec<Vec<usize>>,
+    /// By region, the triangles that it is painted with.
+    painted: Vec<Vec<usize>>,
+    /// The mesh in the open pose.
+    rest: AtRest,
     rims: Vec<Vec<Rim>>,
     meshes: Vec<RegionMesh>,
     names: Vec<String>,
@@ -73,7 +76,10 @@ impl Regions {
                 .iter()
                 .map(|within| RegionMesh::new(within, &positions[open]))
                 .collect(),
-            own,
+            painted: (own.iter())
+                .map(|own| with_rings(triangles, own, PAINTED_RINGS))
+                .collect(),
+            rest: AtRest::new(mapping.poses.topology(), &positions[open]),
             shown,
         }
     }
@@ -81,7 +87,7 @@ impl Regions {
     /// How many there are.
     #[must_use]
     pub(crate) fn count(&self) -> usize {
-        self.own.len()
+        self.painted.len()
     }
 
     /// Which lies in front of which.
@@ -109,8 +115,13 @@ impl Regions {
     }
 
     /// The triangles, by number, that a region is painted with: its own and those around them.
-    pub(super) fn painted_numbers(&self, region: usize, mapping: &Mapping) -> Vec<usize> {
-        with_rings(mapping.poses.topology().triangles(), &self.own[region], PAINTED_RINGS)
+    pub(super) fn painted(&self, region: usize) -> &[usize] {
+        &self.painted[region]
+    }
+
+    /// The mesh in a pose that does not lie over itself.
+    pub(super) fn rest(&self) -> &AtRest {
+        &self.rest
     }
 
     /// The edge of a region in a pose, in source units.

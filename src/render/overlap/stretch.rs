@@ -26,13 +26,17 @@ impl AtRest {
         }
     }
 
+    pub(super) fn triangles(&self) -> &[[usize; 3]] {
+        self.topology.triangles()
+    }
+
     /// By triangle, how much it and those around it are stretched where the vertices are at `positions`.
     pub(super) fn stretches(&self, positions: &[Point]) -> Vec<f64> {
         let of = |triangle: &[usize; 3]| {
             let [from, to] = [&self.positions, positions].map(|at| geometry::corners(at, *triangle));
             geometry::stretch(from, to)
         };
-        let mut stretches: Vec<f64> = self.topology.triangles().iter().map(of).collect();
+        let mut stretches: Vec<f64> = self.triangles().iter().map(of).collect();
         let around = self.topology.neighbours();
         for _ in 0..ROUNDS {
             let mean = |t: usize| {
